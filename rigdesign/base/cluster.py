@@ -123,12 +123,12 @@ class ClusterWorkers(Workers):
         try:
             if self._client.status != "running":
                 raise OSError(f"the connection is {self._client.status}")
-            found = self._client.sync(self._client.scheduler.identity, callback_timeout=SILENT_AFTER)
+            scheduler = self._client.sync(self._client.scheduler.identity, callback_timeout=SILENT_AFTER)
         except Exception as error:
             raise LostWorkersError(
                 f"scheduler {self._address} is lost ({error or type(error).__name__}); start it again with its workers"
             ) from error
-        if found["workers"]:
+        if scheduler["workers"]:
             self._deserted = None
             return
         self._deserted = self._deserted or time.monotonic()
@@ -163,18 +163,18 @@ def _check(client: "Client", address: str) -> None:
     _require("worker", client.run(eval, ASKED_VERSION, on_error="return"))
 
 
-def _require(what: str, versions: Mapping[str, object]) -> None:
+def _require(role: str, versions: Mapping[str, object]) -> None:
     other = {address: version for address, version in versions.items() if version != __version__}
     if not other:
         return
     address, version = next(iter(other.items()))
     if isinstance(version, BaseException):
-        found = f"cannot say which rigdesign it has ({_first_line(version)})"
+        finding = f"cannot say which rigdesign it has ({_first_line(version)})"
     else:
-        found = f"has rigdesign {version}" if version else "has no rigdesign"
+        finding = f"has rigdesign {version}" if version else "has no rigdesign"
     more = f" (and {len(other) - 1} more)" if len(other) > 1 else ""
     raise UsageError(
-        f"{what} {address}{more} {found}, this study is of rigdesign {__version__}; install "
+        f"{role} {address}{more} {finding}, this study is of rigdesign {__version__}; install "
         f"'rigdesign[cluster]=={__version__}' there and start it again"
     )
 

@@ -58,8 +58,8 @@ def spelled_out(text: str) -> str:
     return CONTROL.sub(_code, text)
 
 
-def _code(found: re.Match[str]) -> str:
-    return f"\\u{ord(found[0]):04x}"
+def _code(character: re.Match[str]) -> str:
+    return f"\\u{ord(character[0]):04x}"
 
 
 def shortened(text: str, width: int = WIDEST) -> str:

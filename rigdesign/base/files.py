@@ -64,8 +64,8 @@ def _refuse(state: os.stat_result, largest: float) -> None:
             (stat.S_ISDIR, "a folder"), (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"),
             (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"),
         )  # fmt: skip
-        what = next((words for holds, words in kinds if holds(state.st_mode)), "no file")
-        raise RefusedFileError(f"{what}, not a regular file")
+        kind = next((words for holds, words in kinds if holds(state.st_mode)), "no file")
+        raise RefusedFileError(f"{kind}, not a regular file")
     if state.st_size > largest:
         text = f"{state.st_size / 1e6:.3g} MB, above the limit of {largest / 1e6:.3g} MB"
         raise RefusedFileError(text, state.st_size)
@@ -73,8 +73,8 @@ def _refuse(state: os.stat_result, largest: float) -> None:
 
 def foreign(content: bytes) -> str | None:
     """What the file is by its first bytes, in words; None for text and for what is not known."""
-    found = next((words for start, words in SIGNATURES if content.startswith(start)), None)
-    if found == "a zip archive":
+    kind = next((words for start, words in SIGNATURES if content.startswith(start)), None)
+    if kind == "a zip archive":
         office = next((words for name, words in OFFICE if name in content), None)
-        return office or ("an OpenDocument spreadsheet (.ods)" if ODS in content[:200] else found)
-    return found
+        return office or ("an OpenDocument spreadsheet (.ods)" if ODS in content[:200] else kind)
+    return kind

@@ -302,8 +302,8 @@ def _publish(scratch: Path, out: Path) -> None:
         os.replace(path, target)  # noqa: PTH105 - atomic on every platform
 
 
-def _message(out: Path, what: str) -> str:
-    return f"output folder {shortened(str(out), WIDEST_PLACE)}: {what}; give another folder with --out"
+def _message(out: Path, problem: str) -> str:
+    return f"output folder {shortened(str(out), WIDEST_PLACE)}: {problem}; give another folder with --out"
 
 
 def file_stem(*names: str) -> str:

@@ -167,8 +167,8 @@ def _compute_copy(works: Sequence[Callable[[], object]], reading: int, writing: 
     status = 1
     try:
         assert _lifeline is not None
-        (watched, held), _lifeline = _lifeline, None
-        os.close(held)
+        (watched, write_end), _lifeline = _lifeline, None
+        os.close(write_end)
         os.close(reading)
         begin_child(watched)
         sent = pickle.dumps([work() for work in works], protocol=pickle.HIGHEST_PROTOCOL)
@@ -214,11 +214,11 @@ def stops_held() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask") or threading.current_thread() is not threading.main_thread():
         yield
         return
-    held: list[int] = []
+    signals: list[int] = []
     handlers = {number: signal.getsignal(number) for number in STOPS}
     for number, handler in handlers.items():
         if handler != signal.SIG_IGN:
-            signal.signal(number, lambda number, frame: held.append(number))
+            signal.signal(number, lambda number, frame: signals.append(number))
     before = signal.pthread_sigmask(signal.SIG_BLOCK, STOPS)
     try:
         yield
@@ -226,5 +226,5 @@ def stops_held() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
         for number, handler in handlers.items():
             signal.signal(number, signal.SIG_DFL if handler is None else handler)
-        for number in held[:1]:
+        for number in signals[:1]:
             signal.raise_signal(number)

@@ -47,8 +47,8 @@ def missing_gmsh_libraries() -> list[str]:
 
 def gmsh_remedy(missing: list[str]) -> str:
     """The sentence that tells a user how to get gmsh to load."""
-    what = ", ".join(missing) if missing else "a shared library"
-    return f"gmsh cannot be loaded: {what} is missing; on Debian or Ubuntu run: {APT_LINE}"
+    libraries = ", ".join(missing) if missing else "a shared library"
+    return f"gmsh cannot be loaded: {libraries} is missing; on Debian or Ubuntu run: {APT_LINE}"
 
 
 LOADED, ROOM = 0.6e9, 0.2e9

@@ -144,7 +144,9 @@ class Workers:
                 if not done:
                     self._look()
                 # what is finished goes first: a broken pool raises for the others
-                for future in sorted(done, key=lambda one: (one.exception() is not None, pending[one])):
+                for future in sorted(
+                    done, key=lambda future: (future.exception() is not None, pending[future])
+                ):
                     yield pending.pop(future), self._outcome(future)
         finally:
             self._withdraw(pending)

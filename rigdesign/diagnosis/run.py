@@ -94,11 +94,14 @@ def diagnose_measurement(
         say("evaluating hypotheses")
         channels = tuple(entry.channel for entry in data.channels.values())
         rerun = FullRun(case=case, settings=data.settings, channels=channels, effects=effects, say=say)
-        found = diagnose(problem, calibration, rerun)
+        diagnosis = diagnose(problem, calibration, rerun)
         ahead = NOTHING_NEXT
         if propose:
             ahead = next_measurements(
-                problem, found, lambda: _offer(case, measurement, data.settings, effects, say), calibration
+                problem,
+                diagnosis,
+                lambda: _offer(case, measurement, data.settings, effects, say),
+                calibration,
             )
     return Result(
         case=case,
@@ -107,7 +110,7 @@ def diagnose_measurement(
         baseline=healthy,
         problem=problem,
         effects=effects,
-        diagnosis=found,
+        diagnosis=diagnosis,
         calibration=calibration,
         next_measurements=ahead,
     )
@@ -145,13 +148,13 @@ def calibrate_case(
     with solver_errors(case):
         residuals = read_residuals(case, measurement, effects, say)[1]
         say("fitting constants")
-        found = constants(plain(residuals, calibration.amplitudes, calibration.inflation), effects)
+        fit = constants(plain(residuals, calibration.amplitudes, calibration.inflation), effects)
         reason = f"fitted to the healthy measurement {measurement.title!r} ({measurement.hash[:16]})"
-        values = patched_values(case, [entry.fitted(reason) for entry in found.entries])
+        values = patched_values(case, [entry.fitted(reason) for entry in fit.entries])
     return Calibrated(
         case=case,
         measurement=measurement,
-        constants=found,
+        constants=fit,
         title=f"{case.title}, constants fitted to a healthy set",
         values=values,
     )

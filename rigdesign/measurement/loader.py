@@ -89,16 +89,16 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
             readings = joined(readings, swept.readings)
     except MeasurementError as error:
         raise MeasurementError(error.faults, str(file)) from None
-    at = {"", *(point.name for point in points)}
-    readings = {feature: values for feature, values in readings.items() if feature.setting in at}
-    found = {feature.channel for feature in readings}
+    names = {"", *(point.name for point in points)}
+    readings = {feature: values for feature, values in readings.items() if feature.setting in names}
+    channels_read = {feature.channel for feature in readings}
     told = {name for finding in findings if finding.weight == "dropped" for name in finding.channels}
     findings += [
         DataFinding(
             id="missing_channel", weight="dropped", channels=(name,),
             text=f"{name}: no column, order or recording holds this channel; add it or remove [channels.{name}]",
         )
-        for name in channels if name not in found and name not in told
+        for name in channels if name not in channels_read and name not in told
     ]  # fmt: skip
     if not readings:
         reasons = "; ".join(finding.text for finding in findings if finding.weight == "dropped")
@@ -112,14 +112,14 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
         folder=folder,
         case=case,
         baseline=None if document.baseline is None else (folder / document.baseline).resolve(),
-        channels={name: channel for name, channel in channels.items() if name in found},
+        channels={name: channel for name, channel in channels.items() if name in channels_read},
         setting_sensors=sensors,
         points=points,
         readings=readings,
         findings=tuple(findings),
         costs=document.costs,
         hash=hashed,
-        inspections={name: one.uncertainty for name, one in document.inspections.items()},
+        inspections={name: inspection.uncertainty for name, inspection in document.inspections.items()},
     )
     return with_rates(loaded)
 
@@ -128,8 +128,8 @@ def measurement_file(path: Path) -> Path:
     """measurement.toml of a folder, or the file itself; MeasurementError when there is none."""
     file = path / FILE if path.is_dir() else path
     if not file.is_file():
-        what = f"no {FILE} in this folder" if path.is_dir() else "no such file or folder"
-        raise MeasurementError(f"{what}; give the folder of a measurement set", str(path))
+        problem = f"no {FILE} in this folder" if path.is_dir() else "no such file or folder"
+        raise MeasurementError(f"{problem}; give the folder of a measurement set", str(path))
     return file
 
 
@@ -167,14 +167,14 @@ def _head_faults(document: MeasurementFile, file: Path) -> Iterable[Fault]:
         return
     try:
         folder = (file.parent / document.baseline).resolve()
-        found = (folder / FILE).is_file()
+        exists = (folder / FILE).is_file()
     except (OSError, RuntimeError, ValueError) as error:
         shown = written(repr(document.baseline))
         yield Fault("baseline", shown, f"is no path: {error}", "write the path of the healthy set")
         return
     if folder == file.parent.resolve():
         yield Fault("baseline", written(document.baseline), "is this set itself", "name the healthy set")
-    elif not found:
+    elif not exists:
         yield Fault(
             "baseline", written(document.baseline), f"no {FILE} in {folder}",
             "write the path of the healthy set from this folder",
@@ -206,7 +206,9 @@ def _doubts(document: MeasurementFile) -> Iterable[DataFinding]:
 def joined(first: Readings, second: Readings) -> Readings:
     """Readings of both: of a feature that both have one after the other."""
     both = first.keys() & second.keys()
-    return {**first, **second} | {one: np.concatenate([first[one], second[one]]) for one in both}
+    return {**first, **second} | {
+        feature: np.concatenate([first[feature], second[feature]]) for feature in both
+    }
 
 
 def _named_files(folder: Path, document: MeasurementFile) -> list[Path]:

@@ -96,16 +96,16 @@ class Places:
 
     def teeth_of(self, gear: str) -> tuple[int, int]:
         """Teeth of a gear, ``gearbox.gear``, and of its partner in its first mesh."""
-        name, own = GearName.read(gear).both
+        name, gear_name = GearName.read(gear).both
         box = self.case.gearboxes[name]
-        mesh = box.meshes[box.first_meshes()[own][0]]
-        partner = mesh.wheel if own == mesh.pinion else mesh.pinion
-        return box.gears[own].teeth, box.gears[partner].teeth
+        mesh = box.meshes[box.first_meshes()[gear_name][0]]
+        partner = mesh.wheel if gear_name == mesh.pinion else mesh.pinion
+        return box.gears[gear_name].teeth, box.gears[partner].teeth
 
     def face_position(self, gauge: str) -> float:
         """Of a strain gauge, from mid-face [m]."""
-        name, gear, own = gauge.split(".")
-        return self.case.gearboxes[name].gears[gear].strain_gauges[own].face_position
+        name, gear, gauge_name = gauge.split(".")
+        return self.case.gearboxes[name].gears[gear].strain_gauges[gauge_name].face_position
 
     @cached_property
     def shafts(self) -> tuple[str, ...]:

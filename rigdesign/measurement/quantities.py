@@ -113,8 +113,8 @@ def unit_kind(text: str) -> str | None:
 def unit_problem(text: str, kind: str) -> str:
     """What is wrong with a unit that is not one of ``kind``."""
     other = unit_kind(text)
-    what = "is not a known unit" if other is None else f"is a unit of {KINDS[other].label}"
-    return f"{what}, not of {KINDS[kind].label}"
+    problem = "is not a known unit" if other is None else f"is a unit of {KINDS[other].label}"
+    return f"{problem}, not of {KINDS[kind].label}"
 
 
 def same_worth(first: str, second: str, kind: str) -> bool:

@@ -189,27 +189,27 @@ class Oil:
 
     def warnings(self, temperature: float) -> tuple[str, ...]:
         """Sentences for a temperature [K] outside the data: name, value, limit, remedy."""
-        found = []
+        sentences = []
         viscosity = self.kinematic_viscosity(temperature)
         low, high = VISCOSITY_RANGE
         if not low <= viscosity <= high:
-            found.append(
+            sentences.append(
                 f"oil {self.name}: viscosity at {temperature - ZERO_CELSIUS:.0f} degC = "
                 f"{viscosity * 1e6:.3g} mm2/s: outside {low * 1e6:g} to {high * 1e6:g} mm2/s of the "
                 "viscosity line; measure it there"
             )
         if viscosity > PUMPED_VISCOSITY:
-            found.append(
+            sentences.append(
                 f"oil {self.name}: viscosity at {temperature - ZERO_CELSIUS:.0f} degC = {viscosity * 1e6:.3g} mm2/s: "
                 f"above the {PUMPED_VISCOSITY * 1e6:g} mm2/s that pumps and nozzles take; heat it before the start or "
                 "take a thinner oil"
             )
         if temperature > self.highest_temperature:
-            found.append(
+            sentences.append(
                 f"oil {self.name}: temperature = {temperature - ZERO_CELSIUS:.0f} degC: above "
                 f"{self.highest_temperature - ZERO_CELSIUS:.0f} degC; cool it or take an oil made for it"
             )
-        return tuple(found)
+        return tuple(sentences)
 
 
 def oil_outlet(

@@ -113,11 +113,11 @@ class LossMap:
         counts = np.zeros((len(first), len(second)), dtype=np.int64)
         np.add.at(counts, (row, column), 1)
         if not np.all(counts == 1):
-            at = tuple(np.argwhere(counts != 1)[0])
+            cell = tuple(np.argwhere(counts != 1)[0])
             refuse(
                 "loss_map",
-                f"{show(float(first[at[0]]), 'speed')}, {show(float(second[at[1]]), 'torque')}",
-                f"must occur once, occurs {counts[at]} times",
+                f"{show(float(first[cell[0]]), 'speed')}, {show(float(second[cell[1]]), 'torque')}",
+                f"must occur once, occurs {counts[cell]} times",
                 "give every speed with every torque",
             )
         grid = np.zeros(counts.shape)
@@ -162,8 +162,8 @@ def _cell(kind: str, axis: FloatArray, value: float) -> tuple[int, float]:
             "extend the map to this operating point; it is not extrapolated",
         )
     value = min(max(value, low), high)
-    at = min(int(np.searchsorted(axis, value, side="right")) - 1, len(axis) - 2)
-    return at, float((value - axis[at]) / (axis[at + 1] - axis[at]))
+    interval = min(int(np.searchsorted(axis, value, side="right")) - 1, len(axis) - 2)
+    return interval, float((value - axis[interval]) / (axis[interval + 1] - axis[interval]))
 
 
 ROOM = "room"
@@ -322,15 +322,15 @@ def drive_train_heat(
     """
     require_above("drive.speed", speed, "rad/s", "give the speed of the driven shaft")
     require_at_least("drive.power", power, "W", "the losses of the rig cannot be negative")
-    found = []
+    components = []
     for machine in machines:
         lost = _lost(machine, speed, power / speed, nearest=nearest)
-        found.append(
+        components.append(
             ComponentHeat(name=machine.name, power=lost, split=machine.split, source=machine.loss.source)
         )
         power += lost
         speed *= machine.speed_ratio
-    return DriveTrainHeat(components=tuple(found), input_power=power)
+    return DriveTrainHeat(components=tuple(components), input_power=power)
 
 
 def _lost(machine: Machine, speed: float, torque: float, *, nearest: bool) -> float:

@@ -305,8 +305,8 @@ class Bridge:
         constant, linear, square = (np.asarray(n - u * d) for n, d in zip(top, bottom))
         with np.errstate(invalid="ignore", divide="ignore"):
             root = np.sqrt(linear**2 - 4.0 * square * constant)
-            found = np.asarray(-2.0 * constant / (linear + np.sign(linear) * root))
-        beyond = np.isfinite(u) & ~(np.abs(found) <= LARGEST_STRAIN)
+            strain = np.asarray(-2.0 * constant / (linear + np.sign(linear) * root))
+        beyond = np.isfinite(u) & ~(np.abs(strain) <= LARGEST_STRAIN)
         if beyond.any():
             worst = float(np.abs(u[beyond]).max())
             raise MeasurementError([Fault(
@@ -314,7 +314,7 @@ class Bridge:
                 f"{np.count_nonzero(beyond)} samples beyond a strain of {LARGEST_STRAIN:.0%}",
                 "look at the unit of the channel, the supply voltage, the zero and the gauge's wires",
             )])  # fmt: skip
-        return found
+        return strain
 
     def nonlinearity(self, strain: float) -> float:
         """Relative deviation of the balanced output from the tangent at zero; -k eps / 2 for a quarter bridge [-]."""
@@ -323,10 +323,10 @@ class Bridge:
 
     def _quotient(self, temperature: float | Array | None) -> tuple[_Quadratic, _Quadratic]:
         """Numerator and denominator of u over the strain."""
-        one, two, three, four = self._resistances(temperature)
-        left = _Arm(one.base + two.base, one.slope + two.slope)
-        right = _Arm(three.base + four.base, three.slope + four.slope)
-        plus, minus = _product(one, three), _product(two, four)
+        first, second, third, fourth = self._resistances(temperature)
+        left = _Arm(first.base + second.base, first.slope + second.slope)
+        right = _Arm(third.base + fourth.base, third.slope + fourth.slope)
+        plus, minus = _product(first, third), _product(second, fourth)
         numerator = _Quadratic(*(a - b for a, b in zip(plus, minus)))
         # the supply of four wires drops over two leads in series with both halves of the bridge in parallel
         lost = 2.0 * self.lead_resistance if self.lines == 4 else 0.0
@@ -342,17 +342,17 @@ class Bridge:
         factor, apparent = self.gauge.factor_at(temperature), self.gauge.thermal_strain(temperature)
         nominal = self.gauge.resistance
         # wires 3: one lead in each of the first two arms; 2: both in the arm of the gauge
-        own, neighbour = {2: (2.0, 0.0), 3: (1.0, 1.0)}.get(self.lines, (0.0, 0.0))
+        leads, neighbour = {2: (2.0, 0.0), 3: (1.0, 1.0)}.get(self.lines, (0.0, 0.0))
         active = [
             _Arm(nominal * (1.0 + factor * apparent), nominal * factor * arm) for arm in self.active_arms
         ]
         if len(active) == 1:
             active.append(_Arm(self.completion_resistance or nominal, 0.0))
-        one, two = active[:2]
-        one = _Arm(one.base + own * self.lead_resistance, one.slope)
-        two = _Arm(two.base + neighbour * self.lead_resistance, two.slope)
-        three, four = active[2:] or (_Arm(nominal, 0.0), _Arm(nominal, 0.0))
-        return one, two, three, four
+        first, second = active[:2]
+        first = _Arm(first.base + leads * self.lead_resistance, first.slope)
+        second = _Arm(second.base + neighbour * self.lead_resistance, second.slope)
+        third, fourth = active[2:] or (_Arm(nominal, 0.0), _Arm(nominal, 0.0))
+        return first, second, third, fourth
 
 
 def _product(first: _Arm, second: _Arm) -> _Quadratic:

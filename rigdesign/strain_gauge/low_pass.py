@@ -87,7 +87,7 @@ class LowPass:
         from scipy.signal import lfilter
 
         poles = self.poles
-        found = np.zeros(len(values))
+        output = np.zeros(len(values))
         for index, pole in enumerate(poles):
             others = np.delete(poles, index)
             residue = -pole / np.prod(1.0 - pole / others)
@@ -99,5 +99,5 @@ class LowPass:
             state = -values[0] / pole
             start = [state - numerator[0] * values[0]]
             part, _ = lfilter(numerator, [1.0, -np.exp(x)], values.astype(complex), zi=start)
-            found += (residue * part).real
-        return found
+            output += (residue * part).real
+        return output

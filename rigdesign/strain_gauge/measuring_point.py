@@ -139,20 +139,20 @@ def grid_weights(s: Array, z: Array, gauge: StrainGauge, placement: GaugePlaceme
     return np.asarray(np.einsum("q,qs,qz->sz", points.weight, along, across, optimize=True))
 
 
-def _shares(what: str, nodes: Array, at: Array) -> Array:
+def _shares(key: str, nodes: Array, places: Array) -> Array:
     """(m, n) share of every node in (m,) places; a spline through two or three nodes is a line or parabola."""
     from scipy.interpolate import CubicSpline
 
     steps = np.diff(nodes)
     if len(nodes) < 2 or not np.all(steps > 0.0):
-        refuse(what, f"{len(nodes)} nodes", "must be at least 2 and increase", "sort them")
-    if at.min() < nodes[0] - 0.5 * steps[0] or at.max() > nodes[-1] + 0.5 * steps[-1]:
+        refuse(key, f"{len(nodes)} nodes", "must be at least 2 and increase", "sort them")
+    if places.min() < nodes[0] - 0.5 * steps[0] or places.max() > nodes[-1] + 0.5 * steps[-1]:
         refuse(
-            what, f"{1e3 * nodes[0]:.4g} to {1e3 * nodes[-1]:.4g} mm",
-            f"do not cover the grid from {1e3 * at.min():.4g} to {1e3 * at.max():.4g} mm",
+            key, f"{1e3 * nodes[0]:.4g} to {1e3 * nodes[-1]:.4g} mm",
+            f"do not cover the grid from {1e3 * places.min():.4g} to {1e3 * places.max():.4g} mm",
             "compute the stress further out or correct the position of the gauge",
         )  # fmt: skip
-    return np.asarray(CubicSpline(nodes, np.eye(len(nodes)))(at))
+    return np.asarray(CubicSpline(nodes, np.eye(len(nodes)))(places))
 
 
 # Hooke's law at the free surface of the tooth root: strain along the fillet to stress along it, and back.

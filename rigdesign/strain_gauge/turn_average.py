@@ -239,7 +239,7 @@ def from_speed(time: Array, speed: Array, start: float = 0.0) -> RollingAngle:
             "speed", given, problem, "leave run-up and stop out, turn the sign of the channel, or use a tach",
         )])  # fmt: skip
     integral = CubicSpline(time, speed, extrapolate=False).antiderivative()
-    return lambda at: np.asarray(start + integral(np.asarray(at, dtype=float)))
+    return lambda times: np.asarray(start + integral(np.asarray(times, dtype=float)))
 
 
 def turns_until_same_teeth(teeth: int, mating_teeth: int) -> int:

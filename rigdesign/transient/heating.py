@@ -40,13 +40,13 @@ class Heating:
         self._rig = rig
         self._test = governing_point(points)
         self._states: dict[OperatingPoint, PointLosses] = {
-            held.point: PointLosses(
-                point=held.point,
-                coupling_state=held.last.coupling_state,
-                bearings=held.last.bearings,
-                losses=held.last.losses,
+            solved.point: PointLosses(
+                point=solved.point,
+                coupling_state=solved.last.coupling_state,
+                bearings=solved.last.bearings,
+                losses=solved.last.losses,
             )
-            for held in points
+            for solved in points
         }
         self._conditions: dict[tuple[str, OperatingPoint, bool, Supplies], tuple[Condition, ...]] = {}
 
@@ -90,25 +90,26 @@ class Heating:
         They are interpolated between supply temperatures `LEVEL` apart.
         """
         streams = (OilStreamName(name, kind) for kind in (GEAR_OIL, BEARING_OIL))
-        own = {stream: supplies[stream] for stream in streams if stream in supplies}
-        if not (own and phase.oil):
+        of_housing = {stream: supplies[stream] for stream in streams if stream in supplies}
+        if not (of_housing and phase.oil):
             return self.at(name, point, oil=phase.oil)
         low = {
-            stream: ZERO_CELSIUS + LEVEL * ((value - ZERO_CELSIUS) // LEVEL) for stream, value in own.items()
+            stream: ZERO_CELSIUS + LEVEL * ((value - ZERO_CELSIUS) // LEVEL)
+            for stream, value in of_housing.items()
         }
         first = self.at(name, point, oil=True, supplies=tuple(low.items()))
         warmer = tuple((stream, value + LEVEL) for stream, value in low.items())
         second = self.at(name, point, oil=True, supplies=warmer)
-        share = {stream.part: (value - low[stream]) / LEVEL for stream, value in own.items()}
+        share = {stream.part: (value - low[stream]) / LEVEL for stream, value in of_housing.items()}
         networks = {c.volumes[0].name: c for c in second if isinstance(c, StreamNetwork)}
-        found: list[Condition] = []
+        conditions: list[Condition] = []
         for condition in first:
             kind = condition.volumes[0].name if isinstance(condition, StreamNetwork) else ""
             if kind in share:
-                found += blended([condition], [networks[kind]], share[kind])
+                conditions += blended([condition], [networks[kind]], share[kind])
             else:
-                found.append(condition)
-        return tuple(found)
+                conditions.append(condition)
+        return tuple(conditions)
 
     def state(self, point: OperatingPoint) -> PointLosses:
         """What heats the rig at an operating point."""
@@ -175,14 +176,14 @@ def blended(first: Sequence[Condition], second: Sequence[Condition], share: floa
     A source or stream that one of them lacks counts as zero there; all others must be in both.
     """
     ours, theirs = ({_key(c): c for c in conditions} for conditions in (first, second))
-    found = []
+    mixed = []
     for key in dict.fromkeys([*ours, *theirs]):
         a, b = ours.get(key), theirs.get(key)
         if a is None or b is None:
-            found.append(_alone(b if a is None else a, share if a is None else 1.0 - share))
+            mixed.append(_alone(b if a is None else a, share if a is None else 1.0 - share))
         else:
-            found.append(_between(a, b, share))
-    return tuple(found)
+            mixed.append(_between(a, b, share))
+    return tuple(mixed)
 
 
 def _key(condition: Condition) -> tuple[str, ...]:
@@ -252,13 +253,13 @@ def _network(a: StreamNetwork, b: StreamNetwork, share: float) -> StreamNetwork:
 
 def _streams(a: Sequence[Stream], b: Sequence[Stream], share: float) -> tuple[Stream, ...]:
     ours, theirs = ({(s.source, s.target, s.kind): s for s in streams} for streams in (a, b))
-    found = []
+    mixed = []
     for key in dict.fromkeys([*ours, *theirs]):
         flows = [s[key].mass_flow if key in s else 0.0 for s in (ours, theirs)]
         flow = _mean(flows[0], flows[1], share)
         if flow > 0.0:
-            found.append(replace(ours.get(key) or theirs[key], mass_flow=flow))
-    return tuple(found)
+            mixed.append(replace(ours.get(key) or theirs[key], mass_flow=flow))
+    return tuple(mixed)
 
 
 def _by(items: Sequence[Item], key: Callable[[Item], object]) -> Mapping[object, Item]:

@@ -220,12 +220,12 @@ def _bearing_network(
     chamber = state.coupling_state.oil_outlet[f"{name}.{GEAR_OIL}"]
     supplies = state.coupling_state.oil_supply
     fed, feed = bearing_feed(rig, name, chamber, supplies), f"{BEARING_OIL} {FEED}"
-    own = [placed for placed in losses if placed.gearbox == name]
+    in_gearbox = [placed for placed in losses if placed.gearbox == name]
     friction = dict.fromkeys(box.bearings, 0.0)
-    for placed in own:
+    for placed in in_gearbox:
         if placed.kind.at_bearings:
             friction[placed.part] += placed.loss.power
-    others = math.fsum(placed.into_bearing_oil for placed in own if not placed.kind.at_bearings)
+    others = math.fsum(placed.into_bearing_oil for placed in in_gearbox if not placed.kind.at_bearings)
     parts = [
         _films(BEARING_OIL, feed, fed.inlet, wetted, oil),
         *(_films(f"{BEARING_FILM}:{part}", feed, fed.inlet, wetted, oil) for part in box.bearings),
@@ -355,8 +355,8 @@ def at_least(law: FilmLaw, floor: float) -> FilmLaw:
     least = still(floor)
 
     def bounded(wall: float, fluid: float) -> FilmCoefficient:
-        found = law(wall, fluid)
-        return found if found.value >= floor else least(wall, fluid)
+        coefficient = law(wall, fluid)
+        return coefficient if coefficient.value >= floor else least(wall, fluid)
 
     return bounded
 

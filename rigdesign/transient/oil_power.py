@@ -80,8 +80,8 @@ def stream_heats(
     numbers = first.phase[np.minimum(np.searchsorted(first.times, times), len(first.times) - 1)]
     heats: dict[str, FloatArray] = {}
     for history in histories:
-        own = _housing_heats(rig, heating, history, supply)
-        heats |= {name: np.interp(times, history.times, values) for name, values in own.items()}
+        of_housing = _housing_heats(rig, heating, history, supply)
+        heats |= {name: np.interp(times, history.times, values) for name, values in of_housing.items()}
     housed = {history.gearbox for history in histories}
     without = [name for name in rig.case.gearboxes if name not in housed]
     if without:
@@ -134,31 +134,31 @@ def _housing_heats(
 ) -> dict[str, FloatArray]:
     """Heat of both oils of a housing at its own times [W], and what leaks carry; none while no oil runs."""
     heats = {
-        f"{history.gearbox}.{kind}{what}": np.zeros(len(history.times))
+        f"{history.gearbox}.{kind}{suffix}": np.zeros(len(history.times))
         for kind in (GEAR_OIL, BEARING_OIL)
-        for what in ("", LEAKED)
+        for suffix in ("", LEAKED)
     }
     begins = history.start + np.concatenate([[0.0], np.cumsum([phase.duration for phase in history.phases])])
-    for at, (time, number) in enumerate(zip(history.times, history.phase, strict=True)):
+    for row, (time, number) in enumerate(zip(history.times, history.phase, strict=True)):
         phase = history.phases[number]
-        if not phase.oil or (at == 0 and history.from_rest):
+        if not phase.oil or (row == 0 and history.from_rest):
             continue
         stage = heating.stage(history.gearbox, phase, float(begins[number]), supply)
         conditions = stage.conditions
         if callable(conditions):
             conditions = conditions(_local_time(history, int(number), float(time)))
         networks = {c.volumes[0].name: c for c in conditions if isinstance(c, StreamNetwork)}
-        outlets = {kind: float(values[at]) for kind, values in history.outlets.items()}
+        outlets = {kind: float(values[row]) for kind, values in history.outlets.items()}
         gear, leaked = _gear_heat(rig, history.gearbox, networks[GEAR_OIL], outlets[GEAR_OIL])
-        heats[f"{history.gearbox}.{GEAR_OIL}"][at] = gear - leaked
+        heats[f"{history.gearbox}.{GEAR_OIL}"][row] = gear - leaked
         if BEARING_OIL in networks:
-            heats[f"{history.gearbox}.{BEARING_OIL}"][at] = _bearing_heat(
+            heats[f"{history.gearbox}.{BEARING_OIL}"][row] = _bearing_heat(
                 rig.case, history.gearbox, networks, outlets[BEARING_OIL]
             )
         if not one_tank(rig.case, history.gearbox):
             moved = _moved_by_leak(networks)
-            heats[f"{history.gearbox}.{GEAR_OIL}{LEAKED}"][at] = -moved
-            heats[f"{history.gearbox}.{BEARING_OIL}{LEAKED}"][at] = moved
+            heats[f"{history.gearbox}.{GEAR_OIL}{LEAKED}"][row] = -moved
+            heats[f"{history.gearbox}.{BEARING_OIL}{LEAKED}"][row] = moved
     return heats
 
 
@@ -183,9 +183,9 @@ def _gear_heat(rig: Rig, name: str, network: StreamNetwork, outlet: float) -> tu
     """
     box = rig.case.gearboxes[name]
     if box.jets is None:
-        held = box.gear_oil_temperature
+        set_temperature = box.gear_oil_temperature
         ties = (link.conductance for link in network.links if link.kind == HEATER_AND_COOLER)
-        return sum(ties) * (outlet - (held or outlet)), 0.0
+        return sum(ties) * (outlet - (set_temperature or outlet)), 0.0
     inlet = _fed({GEAR_OIL: network}, GEAR_OIL)
     flow = sum(stream.mass_flow for stream in network.streams if stream.target is None)
     taken = flow * network.specific_heat * (outlet - inlet)

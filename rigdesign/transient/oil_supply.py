@@ -69,8 +69,8 @@ class SupplyHistory:
 
     def states_at(self, time: float) -> Mapping[str, CircuitState]:
         """The circuits at the last of the times up to one [s]."""
-        at = int(np.searchsorted(self.times, time * (1.0 + 1e-12), side="right")) - 1
-        return self.states[max(at, 0)]
+        row = int(np.searchsorted(self.times, time * (1.0 + 1e-12), side="right")) - 1
+        return self.states[max(row, 0)]
 
     def change(self, other: "SupplyHistory") -> float:
         """Largest difference of a supply temperature to another history of the same branch [K]."""
@@ -207,7 +207,7 @@ def circuits_over(
     """
     runs = {name: _run(state, given, answers) for name, state in start.items()}
     count = len(given.times)
-    states = [{name: run[0][at] for name, run in runs.items()} for at in range(count)]
+    states = [{name: run[0][row] for name, run in runs.items()} for row in range(count)]
     return SupplyHistory(
         times=given.times,
         supplies={

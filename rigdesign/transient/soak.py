@@ -53,8 +53,8 @@ def clearances(
     }
     backlash: dict[str, float] = {}
     tip: dict[str, float] = {}
-    for own, mesh in box.meshes.items():
-        full = MeshName(name, own)
+    for mesh_name, mesh in box.meshes.items():
+        full = MeshName(name, mesh_name)
         gears = box.gears[mesh.pinion], box.gears[mesh.wheel]
         first, second = (rig.materials[gear.material].expansion_coefficient for gear in gears)
         pair = rig.pairs[full].warm(
@@ -79,10 +79,10 @@ def clearances(
     }
 
 
-def smallest(found: Clearances, quantity: Quantity) -> tuple[float, str]:
+def smallest(clearances: Clearances, quantity: Quantity) -> tuple[float, str]:
     """Least clearance of a kind [m] and where it is."""
-    place = min(found[quantity], key=lambda key: found[quantity][key])
-    return found[quantity][place], place
+    place = min(clearances[quantity], key=lambda key: clearances[quantity][key])
+    return clearances[quantity][place], place
 
 
 FloatArray = NDArray[np.float64]
@@ -123,7 +123,7 @@ def clearance_limits(case: Case) -> dict[Quantity, float]:
     return {quantity: limit for quantity, limit in stated.items() if limit is not None}
 
 
-def limited(case: Case, found: Clearances) -> Clearances:
+def limited(case: Case, clearances: Clearances) -> Clearances:
     """Those that limits are for: clearances of plain bearings where the rig has any, else of its rolling bearings."""
     films = {
         f"{name}.{part}"
@@ -132,18 +132,18 @@ def limited(case: Case, found: Clearances) -> Clearances:
         if bearing.has_film
     }
     if not films:
-        return found
-    plain = {place: value for place, value in found["bearing_clearance"].items() if place in films}
-    return {**found, "bearing_clearance": plain}
+        return clearances
+    plain = {place: value for place, value in clearances["bearing_clearance"].items() if place in films}
+    return {**clearances, "bearing_clearance": plain}
 
 
-def broken(case: Case, found: Clearances) -> Iterator[tuple[Quantity, str, float]]:
+def broken(case: Case, clearances: Clearances) -> Iterator[tuple[Quantity, str, float]]:
     """Quantity, place and clearance [m] of every limit that does not hold at a moment."""
-    held = limited(case, found)
+    with_limits = limited(case, clearances)
     for quantity, limit in clearance_limits(case).items():
-        if not held[quantity]:
+        if not with_limits[quantity]:
             continue
-        value, place = smallest(held, quantity)
+        value, place = smallest(with_limits, quantity)
         if value < limit:
             yield quantity, place, value
 
@@ -224,10 +224,10 @@ def shortest(steps: Sequence[int], trial: Trial) -> int:
 def first_broken(case: Case, branch: Branch) -> str | None:
     """The first limit a branch breaks up to the end of its last dwell, in words; None if all hold."""
     last = max(i for i, phase in enumerate(branch.phases) if phase.held)
-    for time, number, found in zip(branch.times, branch.phase, branch.clearances, strict=True):
+    for time, number, clearances in zip(branch.times, branch.phase, branch.clearances, strict=True):
         if number > last:
             break
-        for quantity, place, value in broken(case, found):
+        for quantity, place, value in broken(case, clearances):
             limit = clearance_limits(case)[quantity]
             return (
                 f"{quantity.replace('_', ' ')} of {place} falls to {1e6 * value:.1f} um, below {1e6 * limit:.1f} um, "

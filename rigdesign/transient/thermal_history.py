@@ -157,15 +157,15 @@ def probes_of(rig: Rig, name: str) -> list[Probe]:
     box = rig.case.gearboxes[name]
     fed = box.fed_bearings is not None
     films = list(box.bearings) if fed else seated_bearings(rig, name)
-    own = [
+    probes = [
         *(Probe(name=body, place=body) for body in rig.models[name].mesh.bodies),
         Probe(name="housing_max", place="housing", quantity="max"),
         Probe(name="gear_oil_outlet", place=GEAR_OIL),
         Probe(name="bearing_oil_outlet", place=BEARING_OIL if fed else GEAR_OIL),
         *(Probe(name=f"film_outlet_{part}", place=f"{BEARING_FILM}:{part}") for part in films),
     ]
-    taken = {probe.name for probe in own}
-    return own + [
+    taken = {probe.name for probe in probes}
+    return probes + [
         Probe(name=f"probe_{key}" if key in taken else key, place=entry.place, quantity=entry.quantity)
         for key, entry in rig.case.transient.probes.items()
         if entry.gearbox == name
@@ -222,13 +222,13 @@ def branch_histories(
         tolerance = max(case.transient.tolerance, STEP_SHARE * change)
         housings = _housings(rig, heating, plan, Marching(tolerance=tolerance, supply=fed), say)
         heats = stream_heats(rig, heating, [each.oil for each in housings.values()], fed)
-        found = circuits_over(circuits, heats, heating.answers)
-        change = found.change(fed)
+        supply = circuits_over(circuits, heats, heating.answers)
+        change = supply.change(fed)
         say(f"oil circuits, sweep {sweep}: supply temperatures move by {change:.2g} K")
         if change <= SWEEP_TOLERANCE and tolerance == case.transient.tolerance:
-            power = oil_power(case, plan.name, heats, found)
-            return BranchHistories(plan=plan, housings=housings, supply=found, power=power)
-        fed = secants.following(fed, found)
+            power = oil_power(case, plan.name, heats, supply)
+            return BranchHistories(plan=plan, housings=housings, supply=supply, power=power)
+        fed = secants.following(fed, supply)
     raise NotConvergedError(
         f"oil circuits over {plan.name}: supply temperatures still move by {change:.3g} K after {MOST_SWEEPS} sweeps, "
         f"limit {SWEEP_TOLERANCE:g} K; give the tanks more oil or the consumers less flow"
@@ -238,11 +238,11 @@ def branch_histories(
 def _housings(
     rig: Rig, heating: Heating, plan: BranchPlan, how: Marching, say: Callable[[str], None]
 ) -> dict[str, ThermalHistory]:
-    found = {}
+    histories = {}
     for name in rig.models:
         say(f"{name} over {plan.name.replace('_', ' ')}: {', '.join(phase.name for phase in plan.phases)}")
-        found[name] = march(rig, heating, name, plan, how)
-    return found
+        histories[name] = march(rig, heating, name, plan, how)
+    return histories
 
 
 SHORTER = "shorter_warm_up"
@@ -281,25 +281,25 @@ def run_transient(
         A time step or an expansion does not converge.
     """
     heating = Heating(rig, points)
-    found = _branches(rig, heating, say)
+    by_branch = _branches(rig, heating, say)
     branches: list[Branch] = []
     soaks: list[Soak] = []
     missed: dict[str, float] = {}
     for name in rig.models:
-        histories = [each.housings[name] for each in found.values()]
+        histories = [each.housings[name] for each in by_branch.values()]
         say(f"expanding {name} over {sum(len(h.fields) for h in histories)} times")
-        own, missed[name] = _read(rig, heating, name, histories)
-        by_name = {branch.name: branch for branch in own}
+        housing_branches, missed[name] = _read(rig, heating, name, histories)
+        by_name = {branch.name: branch for branch in housing_branches}
 
         def trial(step: int, planned: ThermalHistory = histories[0]) -> bool:
             say(f"{planned.gearbox}: warm-up of {planned.solution.times[step] / 3600.0:.2f} h")
-            shorter = _after_warm_up(rig, heating, planned, step, found[SCHEDULE].supply)
+            shorter = _after_warm_up(rig, heating, planned, step, by_branch[SCHEDULE].supply)
             (tried,), _ = _read(rig, heating, planned.gearbox, [shorter])
             return first_broken(rig.case, tried) is None
 
         soaks.append(soak_of(rig.case, by_name[SCHEDULE], by_name.get("cold_start"), trial))
-        branches += own
-    power = tuple(each.power for each in found.values())
+        branches += housing_branches
+    power = tuple(each.power for each in by_branch.values())
     return TransientRun(branches=tuple(branches), soak=tuple(soaks), power=power, missed=missed)
 
 
@@ -308,19 +308,19 @@ def _branches(rig: Rig, heating: Heating, say: Callable[[str], None]) -> dict[st
     cold: Mapping[str, CircuitState] = start_states(rig)
     phases = schedule_phases(rig.case)
     planned = branch_histories(rig, heating, BranchPlan(name=SCHEDULE, phases=phases), cold, say)
-    found = {SCHEDULE: planned}
+    by_branch = {SCHEDULE: planned}
     number = max(i for i, phase in enumerate(phases) if phase.held)
     stopped = sum(phase.duration for phase in phases[: number + 1])
     for event in rig.case.transient.events:
-        own = event_phases(rig.case, event, phases[number])
+        following = event_phases(rig.case, event, phases[number])
         if event == "cold_start":
-            plan, circuits = BranchPlan(name=event, phases=own), cold
+            plan, circuits = BranchPlan(name=event, phases=following), cold
         else:
             warm = {name: history.ends[number] for name, history in planned.housings.items()}
-            plan = BranchPlan(name=event, phases=own, start=stopped, housings=warm)
+            plan = BranchPlan(name=event, phases=following, start=stopped, housings=warm)
             circuits = {} if planned.supply is None else planned.supply.states_at(stopped)
-        found[event] = branch_histories(rig, heating, plan, circuits, say)
-    return found
+        by_branch[event] = branch_histories(rig, heating, plan, circuits, say)
+    return by_branch
 
 
 def _read(

@@ -20,8 +20,8 @@ def effects_of(case: Case, *, channels: Iterable[Channel] | None = ()) -> tuple[
         for None, which stands for any
     """
     bending = channels is None or any(channel.quantity in LATERAL_QUANTITIES for channel in channels)
-    found = tuple(registered_effects(case, lateral=bending))
-    names = [effect.name for effect in found]
+    effects = tuple(registered_effects(case, lateral=bending))
+    names = [effect.name for effect in effects]
     assert len(set(names)) == len(names)
-    assert all(effect.healthy > 0.0 or effect.matters > 0.0 for effect in found)
-    return found
+    assert all(effect.healthy > 0.0 or effect.matters > 0.0 for effect in effects)
+    return effects

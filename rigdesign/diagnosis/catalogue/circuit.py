@@ -52,7 +52,7 @@ def teeth(part: GearboxPart) -> Iterator[Effect]:
 
 
 def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
-    gear, at, label = box.gears[name], f"gearboxes.{box_name}.gears.{name}.flank", GearName(box_name, name)
+    gear, path, label = box.gears[name], f"gearboxes.{box_name}.gears.{name}.flank", GearName(box_name, name)
     spread = _healthy_teeth(box, name)
     yield Effect(
         name=f"run_out:{label}",
@@ -60,7 +60,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
         family=EXCITATION,
         signature="order 1 of its shaft from low speed on, sidebands of the mesh orders",
         parameters=_amplitudes("eccentricity", 50.0 * MICROMETRE),
-        change=_RunOut(label, at),
+        change=_RunOut(label, path),
         healthy=spread["run_out"],
         linear=True,
         doubled="run-out F_r",
@@ -72,7 +72,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
             family=EXCITATION,
             signature=f"order {order} of its shaft, sidebands of the mesh orders at that distance",
             parameters=_amplitudes("amplitude", 40.0 * MICROMETRE),
-            change=_PitchWave(label, at, order),
+            change=_PitchWave(label, path, order),
             healthy=spread["pitch_wave"],
             linear=True,
         )
@@ -82,7 +82,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
         family=EXCITATION,
         signature="all orders of its shaft alike, larger at low torque",
         parameters=(_length("deviation", -60.0, 60.0),),
-        change=_SinglePitch(label, at, gear.teeth),
+        change=_SinglePitch(label, path, gear.teeth),
         any_tooth=gear.teeth,
         linear=True,
         matters=spread["pitch_tolerance"],
@@ -93,7 +93,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
         family=TOOTH,
         signature="all orders of its shaft, growing with torque",
         parameters=(Parameter(name="softening", unit="", low=0.0, high=0.8, source=PRACTICE),),
-        change=_WeakTooth(at),
+        change=_WeakTooth(path),
         any_tooth=gear.teeth,
         matters=LEAST_SOFTENING,
     )
@@ -103,7 +103,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
         family=TOOTH,
         signature="mesh orders only, changing with torque",
         parameters=(_length("slope", -25.0, 25.0),),
-        change=Added(f"{at}.profile_slope", gear.flank.profile_slope),
+        change=Added(f"{path}.profile_slope", gear.flank.profile_slope),
         healthy=spread["slope"],
     )
     if gear.flank.tip_relief_length > 0.0:
@@ -113,7 +113,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
             family=TOOTH,
             signature="mesh orders only, changing with torque",
             parameters=(_length("relief", -1e6 * gear.flank.tip_relief, 25.0),),
-            change=Added(f"{at}.tip_relief", gear.flank.tip_relief),
+            change=Added(f"{path}.tip_relief", gear.flank.tip_relief),
             healthy=3.0 * MICROMETRE,
         )
 
@@ -153,25 +153,25 @@ def _amplitudes(name: str, most: float, unit: str = "m") -> tuple[Parameter, Par
     return first, second
 
 
-def _joined(now: tuple[float, float], more: tuple[float, float]) -> tuple[float, float]:
+def _joined(harmonic: tuple[float, float], more: tuple[float, float]) -> tuple[float, float]:
     """Amplitude and phase of a harmonic (amplitude, phase) with parts along cosine and sine added."""
-    along, across = now[0] * cos(now[1]) + more[0], now[0] * sin(now[1]) + more[1]
+    along, across = harmonic[0] * cos(harmonic[1]) + more[0], harmonic[0] * sin(harmonic[1]) + more[1]
     return hypot(along, across), atan2(across, along) % (2.0 * pi)
 
 
 class _RunOut:
-    def __init__(self, gear: GearName, at: str) -> None:
-        self._gear, self._at = gear, at
+    def __init__(self, gear: GearName, path: str) -> None:
+        self._gear, self._path = gear, path
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
         flank = case.gearboxes[self._gear.gearbox].gears[self._gear.part].flank
         size, phase = _joined((0.5 * flank.run_out, flank.run_out_phase), (values[0], values[1]))
-        return {f"{self._at}.run_out": 2.0 * size, f"{self._at}.run_out_phase": phase}
+        return {f"{self._path}.run_out": 2.0 * size, f"{self._path}.run_out_phase": phase}
 
 
 class _PitchWave:
-    def __init__(self, gear: GearName, at: str, order: int) -> None:
-        self._gear, self._at, self._order = gear, at, order
+    def __init__(self, gear: GearName, path: str, order: int) -> None:
+        self._gear, self._path, self._order = gear, path, order
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
         waves = [
@@ -180,7 +180,7 @@ class _PitchWave:
         ]
         size, phase = _joined((0.0, 0.0), (values[0], values[1]))
         more = {"order": self._order, "amplitude": _metres(size), "phase": _radians(phase)}
-        return {f"{self._at}.pitch_waves": [*waves, more]}
+        return {f"{self._path}.pitch_waves": [*waves, more]}
 
 
 def _metres(value: float) -> str:
@@ -194,44 +194,49 @@ def _radians(value: float) -> str:
 class _SinglePitch:
     """One tooth stands ahead: its pitch is long, the next one short."""
 
-    def __init__(self, gear: GearName, at: str, teeth: int) -> None:
-        self._gear, self._at, self._teeth = gear, at, teeth
+    def __init__(self, gear: GearName, path: str, teeth: int) -> None:
+        self._gear, self._path, self._teeth = gear, path, teeth
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
-        now = (
+        stated = (
             case.gearboxes[self._gear.gearbox].gears[self._gear.part].flank.single_pitch
             or (0.0,) * self._teeth
         )
         tooth = int(values[1]) if len(values) > 1 else 0
-        pitch = list(now)
+        pitch = list(stated)
         pitch[tooth] += values[0]
         pitch[(tooth + 1) % self._teeth] -= values[0]
-        return {f"{self._at}.single_pitch": [_metres(value) for value in pitch]}
+        return {f"{self._path}.single_pitch": [_metres(value) for value in pitch]}
 
 
 class _WeakTooth:
-    def __init__(self, at: str) -> None:
-        self._at = at
+    def __init__(self, path: str) -> None:
+        self._path = path
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
         tooth = int(values[1]) if len(values) > 1 else 0
-        return {f"{self._at}.weak_tooth.tooth": tooth, f"{self._at}.weak_tooth.stiffness": 1.0 - values[0]}
+        return {
+            f"{self._path}.weak_tooth.tooth": tooth,
+            f"{self._path}.weak_tooth.stiffness": 1.0 - values[0],
+        }
 
 
 @of_gearbox(drivetrain=True)
 def mesh_compliance(part: GearboxPart) -> Iterator[Effect]:
     """Stiffness and damping of every mesh."""
     for name, mesh in part.box.meshes.items():
-        at, label = f"{part.path}.meshes.{name}", f"{part.name}.{name}"
+        path, label = f"{part.path}.meshes.{name}", f"{part.name}.{name}"
         stiffness = UncertainValue(
-            path=f"{at}.stiffness_factor", now=mesh.stiffness_factor, bounds=(0.6, 1.5), healthy=0.07
+            path=f"{path}.stiffness_factor", now=mesh.stiffness_factor, bounds=(0.6, 1.5), healthy=0.07
         )
         yield stiffness.effect(
             f"mesh_stiffness:{label}", f"stiffness of the mesh {label}", STIFFNESS,
             "mesh orders, resonance speeds of the mesh",
         )  # fmt: skip
         key = "damping" if mesh.damping is not None else "damping_ratio"
-        damping = UncertainValue(path=f"{at}.{key}", now=getattr(mesh, key), bounds=(0.2, 5.0), healthy=0.25)
+        damping = UncertainValue(
+            path=f"{path}.{key}", now=getattr(mesh, key), bounds=(0.2, 5.0), healthy=0.25
+        )
         yield damping.effect(
             f"mesh_damping:{label}", f"damping of the mesh {label}", DAMPING,
             "height of mesh orders near resonance",
@@ -242,16 +247,16 @@ def mesh_compliance(part: GearboxPart) -> Iterator[Effect]:
 def gear_bodies(part: GearboxPart) -> Iterator[Effect]:
     """Inertia of every gear, stiffness of its spline."""
     for name, gear in part.box.gears.items():
-        at, label = f"{part.path}.gears.{name}", f"{part.name}.{name}"
+        path, label = f"{part.path}.gears.{name}", f"{part.name}.{name}"
         inertia = UncertainValue(
-            path=f"{at}.inertia_factor", now=gear.inertia_factor, bounds=(0.7, 1.4), healthy=0.04
+            path=f"{path}.inertia_factor", now=gear.inertia_factor, bounds=(0.7, 1.4), healthy=0.04
         )
         yield inertia.effect(
             f"inertia:{label}", f"inertia of {label}", INERTIA, "torsional modes that move this gear"
         )
         if gear.spline is not None:
             spline = UncertainValue(
-                path=f"{at}.spline.torsional_stiffness", now=gear.spline.torsional_stiffness,
+                path=f"{path}.spline.torsional_stiffness", now=gear.spline.torsional_stiffness,
                 bounds=(0.1, 5.0), healthy=0.10,
             )  # fmt: skip
             yield spline.effect(
@@ -264,9 +269,9 @@ def gear_bodies(part: GearboxPart) -> Iterator[Effect]:
 def couplings(case: Case) -> Iterator[Effect]:
     """Stiffness, damping and misalignment of every coupling."""
     for name, coupling in case.power_circuit.couplings.items():
-        at = f"drivetrain.couplings.{name}"
+        path = f"drivetrain.couplings.{name}"
         stiffness = UncertainValue(
-            path=f"{at}.torsional_stiffness",
+            path=f"{path}.torsional_stiffness",
             now=coupling.torsional_stiffness,
             bounds=(0.2, 5.0),
             healthy=0.08,
@@ -276,7 +281,7 @@ def couplings(case: Case) -> Iterator[Effect]:
             "low torsional modes and the torque caused by run-out",
         )  # fmt: skip
         damping = UncertainValue(
-            path=f"{at}.torsional_damping", now=coupling.torsional_damping, bounds=(0.2, 5.0), healthy=0.25
+            path=f"{path}.torsional_damping", now=coupling.torsional_damping, bounds=(0.2, 5.0), healthy=0.25
         )
         yield damping.effect(
             f"coupling_damping:{name}", f"damping of the coupling {name}", DAMPING,
@@ -288,7 +293,7 @@ def couplings(case: Case) -> Iterator[Effect]:
             family=EXCITATION,
             signature="order 2 of its shaft, the same at any torque",
             parameters=_amplitudes("torque", 20.0, "N m"),
-            change=_Harmonic(f"{at}.excitation", coupling.excitation, 2.0),
+            change=_Harmonic(f"{path}.excitation", coupling.excitation, 2.0),
             linear=True,
             matters=LEAST_TORQUE,
         )
@@ -297,12 +302,12 @@ def couplings(case: Case) -> Iterator[Effect]:
 class _Harmonic:
     """Adds a harmonic torque to a list of them."""
 
-    def __init__(self, path: str, now: tuple[HarmonicTorqueInput, ...], order: float) -> None:
-        self._path, self._now, self._order = path, now, order
+    def __init__(self, path: str, stated: tuple[HarmonicTorqueInput, ...], order: float) -> None:
+        self._path, self._stated, self._order = path, stated, order
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
         size, phase = _joined((0.0, 0.0), (values[0], values[1]))
-        rows = [(one.order, one.torque, one.phase) for one in self._now]
+        rows = [(harmonic.order, harmonic.torque, harmonic.phase) for harmonic in self._stated]
         return {
             self._path: [
                 {"order": order, "torque": f"{torque!r} N m", "phase": _radians(angle)}

@@ -245,12 +245,12 @@ class UncertainValue:
 class Added:
     """Adds to the value at a path."""
 
-    def __init__(self, path: str, now: float) -> None:
-        self._path, self._now = path, now
+    def __init__(self, path: str, stated: float) -> None:
+        self._path, self._stated = path, stated
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
         """The change at the value that is added."""
-        return {self._path: self._now + values[0]}
+        return {self._path: self._stated + values[0]}
 
 
 # Register of the catalogue: an effect says what it needs of a case, nothing else lists it.

@@ -88,7 +88,7 @@ def face_load(part: GearboxPart) -> Iterator[Effect]:
         gears = (mesh.pinion, mesh.wheel)
         if not any(part.box.gears[gear].strain_gauges for gear in gears):
             continue
-        label, at = f"{part.name}.{name}", f"{part.path}.gears"
+        label, path = f"{part.name}.{name}", f"{part.path}.gears"
         slope = part.box.gears[mesh.pinion].flank.helix_slope
         yield Effect(
             name=f"misalignment:{label}",
@@ -96,7 +96,7 @@ def face_load(part: GearboxPart) -> Iterator[Effect]:
             family=FACE,
             signature="gauge tilt at all speeds, fading with torque",
             parameters=(_micrometres("slope", (-50.0, 50.0)),),
-            change=Added(f"{at}.{mesh.pinion}.flank.helix_slope", slope),
+            change=Added(f"{path}.{mesh.pinion}.flank.helix_slope", slope),
             healthy=sqrt(AXES**2 + sum(_helix_slope(part.box, name, gear) ** 2 for gear in gears)),
         )
         for entry in MODIFIED:
@@ -118,20 +118,20 @@ def _modified(part: GearboxPart, mesh_name: str, entry: _Modified) -> Iterator[E
     mesh = part.box.meshes[mesh_name]
     sizes = {gear: getattr(part.box.gears[gear].flank, entry.key) for gear in (mesh.wheel, mesh.pinion)}
     gear = max(sizes, key=lambda name: abs(sizes[name]))
-    now = sizes[gear]
-    if not now and not entry.always:
+    stated = sizes[gear]
+    if not stated and not entry.always:
         return
     low, high = entry.bounds
     if entry.key != "twist":
-        low = max(low, -now / MICROMETRE)
+        low = max(low, -stated / MICROMETRE)
     yield Effect(
         name=f"{entry.key}:{part.name}.{mesh_name}",
         title=f"{entry.title} of the mesh {part.name}.{mesh_name}",
         family=FACE,
         signature=entry.signature,
         parameters=(_micrometres("deviation", (low, high)),),
-        change=Added(f"{part.path}.gears.{gear}.flank.{entry.key}", now),
-        healthy=max(MODIFICATION * abs(now), LEAST_MODIFICATION),
+        change=Added(f"{part.path}.gears.{gear}.flank.{entry.key}", stated),
+        healthy=max(MODIFICATION * abs(stated), LEAST_MODIFICATION),
     )
 
 
@@ -140,18 +140,18 @@ def gauges(part: GearboxPart) -> Iterator[Effect]:
     """Place and measuring chain of every gauge."""
     for gear, entry in part.box.gears.items():
         for name, gauge in entry.strain_gauges.items():
-            at, label = f"{part.path}.gears.{gear}.strain_gauges.{name}", f"{part.name}.{gear}.{name}"
+            path, label = f"{part.path}.gears.{gear}.strain_gauges.{name}", f"{part.name}.{gear}.{name}"
             places = {"face_position": gauge.face_position}
             if gauge.tangent_angle is None and gauge.root_diameter is None:
                 places["fillet_position"] = gauge.fillet_position or 0.0
-            for key, now in places.items():
+            for key, position in places.items():
                 yield Effect(
                     name=f"gauge_{key}:{label}",
                     title=f"place of the gauge {label} along the {key.partition('_')[0]}",
                     family=GAUGE_PLACE,
                     signature="one gauge alone, in proportion to its strain",
                     parameters=(_micrometres("offset", (-1000.0, 1000.0)),),
-                    change=Added(f"{at}.{key}", now),
+                    change=Added(f"{path}.{key}", position),
                     healthy=PLACE,
                     linear=True,
                 )
@@ -163,7 +163,7 @@ def gauges(part: GearboxPart) -> Iterator[Effect]:
                 parameters=(
                     Parameter(name="time constant", unit="s", low=0.0, high=LONGEST_LAG, source=PRACTICE),
                 ),
-                change=Added(f"{at}.response_time", gauge.response_time),
+                change=Added(f"{path}.response_time", gauge.response_time),
                 matters=LEAST_LAG,
             )
 

@@ -100,14 +100,14 @@ def not_steady(case: Case) -> Iterator[Effect]:
 def losses(part: GearboxPart) -> Iterator[Effect]:
     """Every loss that the case scales."""
     for loss in LOSSES:
-        now: float = getattr(part.box.loss_factors, loss.key)
+        loss_factor: float = getattr(part.box.loss_factors, loss.key)
         yield Effect(
             name=f"{loss.key}_loss:{part.name}",
             title=f"{loss.words} in the {part.box.title}",
             family=LOSS,
             signature=loss.signature,
             parameters=(factor("factor", *loss.bounds),),
-            change=Scaled(((f"{part.path}.loss_factors.{loss.key}", now),)),
+            change=Scaled(((f"{part.path}.loss_factors.{loss.key}", loss_factor),)),
             healthy=loss.healthy,
             exponents=loss.exponents,
             heats=f"{part.name}.gear_oil" if loss.in_gear_oil else "",
@@ -122,7 +122,7 @@ class _Rubbing:
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
         more = values[0] / len(self._paths)
-        return {path: now + more for path, now in self._paths.items()}
+        return {path: stated + more for path, stated in self._paths.items()}
 
 
 @of_gearbox()
@@ -213,14 +213,14 @@ def flows(part: GearboxPart) -> Iterator[Effect]:
 def oil(part: GearboxPart) -> Iterator[Effect]:
     """Properties of the oil and air in it."""
     name, box = part.name, part.box
-    at, state = f"gearboxes.{name}.oil_state", box.oil_state
+    path, state = f"gearboxes.{name}.oil_state", box.oil_state
     yield Effect(
         name=f"aeration:{name}",
         title=f"air in the oil of {name}",
         family=OIL,
         signature="every oil rise of the gearbox larger, losses nearly unchanged",
         parameters=(share("air content", 0.2),),
-        change=Added(f"{at}.air_content", state.air_content),
+        change=Added(f"{path}.air_content", state.air_content),
         matters=0.01,
     )
     yield Effect(
@@ -229,7 +229,7 @@ def oil(part: GearboxPart) -> Iterator[Effect]:
         family=OIL,
         signature="bearing losses and tooth friction together, more when cold",
         parameters=(factor("factor", 0.7, 1.4),),
-        change=Scaled(((f"{at}.viscosity_factor", state.viscosity_factor),)),
+        change=Scaled(((f"{path}.viscosity_factor", state.viscosity_factor),)),
         healthy=0.06,
     )
     yield Effect(
@@ -238,7 +238,7 @@ def oil(part: GearboxPart) -> Iterator[Effect]:
         family=OIL,
         signature="every oil rise of the gearbox by one factor, drive torque unchanged",
         parameters=(factor("factor", 0.8, 1.25),),
-        change=Scaled(((f"{at}.heat_capacity_factor", state.heat_capacity_factor),)),
+        change=Scaled(((f"{path}.heat_capacity_factor", state.heat_capacity_factor),)),
         healthy=0.03,
     )
 
@@ -275,7 +275,7 @@ factor of three (`thermal.films.convection.bearing_film`)."""
 def films(part: GearboxPart) -> Iterator[Effect]:
     """Films to oil, room air and bearings, emissivity of the walls."""
     name, housing = part.name, part.housing
-    at = f"gearboxes.{name}.housing"
+    path = f"gearboxes.{name}.housing"
     for entry, condition in housing.boundary.items():
         if not isinstance(condition, SurfaceFilm) or condition.wetted_by == "ambient":
             continue
@@ -287,7 +287,7 @@ def films(part: GearboxPart) -> Iterator[Effect]:
             family=FILM,
             signature="moves the bodies it wets against the oil, leaves drive torque",
             parameters=(factor("factor", low, high),),
-            change=Scaled(((f"{at}.boundary.{entry}.film_factor", condition.film_factor),)),
+            change=Scaled(((f"{path}.boundary.{entry}.film_factor", condition.film_factor),)),
             healthy=0.25 if given else IN_MIST,
             links=_wetted(name, condition.surfaces),
             likeness_of_place=True,
@@ -295,7 +295,7 @@ def films(part: GearboxPart) -> Iterator[Effect]:
     yield _film(
         f"ambient_film:{name}",
         "film to room air",
-        f"{at}.ambient_film_factor",
+        f"{path}.ambient_film_factor",
         housing.ambient_film_factor,
         tuple(
             link
@@ -307,7 +307,7 @@ def films(part: GearboxPart) -> Iterator[Effect]:
     yield _film(
         f"bearing_film:{name}",
         "film in the bearings",
-        f"{at}.bearing_film_factor",
+        f"{path}.bearing_film_factor",
         housing.bearing_film_factor,
         (f"bearing_film:{name}.*",),
     )
@@ -319,7 +319,7 @@ def films(part: GearboxPart) -> Iterator[Effect]:
     }
     if painted:
         grey = {
-            f"{at}.boundary.{entry}.emissivity_excess": c.emissivity_excess for entry, c in painted.items()
+            f"{path}.boundary.{entry}.emissivity_excess": c.emissivity_excess for entry, c in painted.items()
         }
         whole = [condition.emissivity for condition in painted.values()]
         most = 0.99 - max(whole)
@@ -350,10 +350,10 @@ class _Shifted:
         self._paths = paths
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
-        return {path: now + values[0] for path, now in self._paths.items()}
+        return {path: stated + values[0] for path, stated in self._paths.items()}
 
 
-def _film(name: str, title: str, path: str, now: float, links: tuple[str, ...]) -> Effect:
+def _film(name: str, title: str, path: str, stated: float, links: tuple[str, ...]) -> Effect:
     outside = name.startswith("ambient")
     return Effect(
         name=name,
@@ -361,7 +361,7 @@ def _film(name: str, title: str, path: str, now: float, links: tuple[str, ...]) 
         family=FILM,
         signature="moves the whole housing as dT does" if outside else "moves shells and journals",
         parameters=(factor("factor", 0.5, 3.0) if outside else factor("factor", 0.2, 3.0),),
-        change=Scaled(((path, now),)),
+        change=Scaled(((path, stated),)),
         healthy=0.15 if outside else IN_BEARING,
         links=links,
     )
@@ -384,8 +384,8 @@ class Resistance:
         """The change at a resistance."""
         more = values[0]
         return {
-            path: 1.0 / (more + (0.0 if now is None else 1.0 / now))
-            for path, now in self._paths.items()
+            path: 1.0 / (more + (0.0 if conductance is None else 1.0 / conductance))
+            for path, conductance in self._paths.items()
             if more > 0.0
         }
 

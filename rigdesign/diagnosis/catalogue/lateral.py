@@ -92,20 +92,20 @@ def couplings_out_of_true(case: Case) -> Iterator[Effect]:
     """Flanges that turn out of true, and the angle of cross joints."""
     power = case.power_circuit
     for name, coupling in power.couplings.items():
-        at = f"drivetrain.couplings.{name}"
+        path = f"drivetrain.couplings.{name}"
         if coupling.radial_stiffness:
             yield _once_a_turn(
                 f"flange_run_out:{name}", f"run-out of a flange at the coupling {name}",
                 ("run-out", LARGEST_BOW, "m"),
                 "order 1 of both its shafts, lateral, the same at any speed below their resonances",
-                Turned(f"{at}.flange_run_out", rect(coupling.flange_run_out, coupling.flange_run_out_angle)),
+                Turned(f"{path}.flange_run_out", rect(coupling.flange_run_out, coupling.flange_run_out_angle)),
                 HEALTHY_BOW,
             )  # fmt: skip
         if coupling.angular_stiffness:
             yield _once_a_turn(
                 f"flange_tilt:{name}", f"tilt of the flange at the coupling {name}", ("tilt", LARGEST_TILT, "rad"),
                 "order 1 of both its shafts, lateral, the same at any speed below their resonances",
-                Turned(f"{at}.flange_tilt", rect(coupling.flange_tilt, coupling.flange_tilt_angle)), HEALTHY_TILT,
+                Turned(f"{path}.flange_tilt", rect(coupling.flange_tilt, coupling.flange_tilt_angle)), HEALTHY_TILT,
             )  # fmt: skip
         if coupling.alternates:
             parts = [
@@ -120,7 +120,7 @@ def couplings_out_of_true(case: Case) -> Iterator[Effect]:
                 family=EXCITATION,
                 signature="order 2 of its shafts, lateral in proportion to the torque",
                 parameters=tuple(parts),
-                change=MoreAngle(at, (coupling.cold_angle_lateral, coupling.cold_angle_vertical)),
+                change=MoreAngle(path, (coupling.cold_angle_lateral, coupling.cold_angle_vertical)),
                 matters=LEAST_ANGLE,
                 bends=True,
             )
@@ -132,24 +132,24 @@ def bearing_stiffness(part: GearboxPart) -> Iterator[Effect]:
     power = part.case.power_circuit
     stated = power.bearing_coefficients == "stated"
     for name, bearing in part.box.bearings.items():
-        at, label = f"{part.path}.bearings.{name}", f"{part.name}.{name}"
+        path, label = f"{part.path}.bearings.{name}", f"{part.name}.{name}"
         shows = "mesh orders of its shaft, order 1 where an unbalance is stated, most at its own sensors"
         if stated and bearing.radial_stiffness is not None:
             yield _yields(
                 f"bearing_stiffness:{label}", f"stiffness of the bearing {label}", shows,
-                (f"{at}.radial_stiffness", bearing.radial_stiffness), (0.2, 5.0), SUPPORT_SPREAD,
+                (f"{path}.radial_stiffness", bearing.radial_stiffness), (0.2, 5.0), SUPPORT_SPREAD,
             )  # fmt: skip
         elif bearing.type == "journal":
             yield _yields(
                 f"bearing_clearance:{label}", f"clearance of the bearing {label}",
                 f"{shows}, its friction and temperature a little",
-                (f"{at}.diametral_clearance", bearing.diametral_clearance), (0.4, 2.5), CLEARANCE_SPREAD,
+                (f"{path}.diametral_clearance", bearing.diametral_clearance), (0.4, 2.5), CLEARANCE_SPREAD,
             )  # fmt: skip
         if bearing.support_stiffness is not None:
             yield _yields(
                 f"support_stiffness:{label}", f"stiffness of the housing under the bearing {label}",
                 f"{shows}, accelerations more than shaft displacements",
-                (f"{at}.support_stiffness", bearing.support_stiffness), (0.2, 5.0), SUPPORT_SPREAD,
+                (f"{path}.support_stiffness", bearing.support_stiffness), (0.2, 5.0), SUPPORT_SPREAD,
             )  # fmt: skip
 
 
@@ -244,15 +244,18 @@ class MoreUnbalance:
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
         """The change at the parts along cosine and sine."""
-        at = f"drivetrain.shafts.{self._shaft}"
+        path = f"drivetrain.shafts.{self._shaft}"
         stated = _shaft(case, self._shaft).unbalances
-        found = {name: _written(own.position, rect(own.unbalance, own.angle)) for name, own in stated.items()}
+        unbalances = {
+            name: _written(unbalance.position, rect(unbalance.unbalance, unbalance.angle))
+            for name, unbalance in stated.items()
+        }
         more = complex(values[0], values[1])
         if self.NAME in stated:
-            own = stated[self.NAME]
-            more += rect(own.unbalance, own.angle)
-        found[self.NAME] = _written(self._position, more)
-        return {f"{at}.unbalances": found, f"{at}.balance_grade": self._grade}
+            unbalance = stated[self.NAME]
+            more += rect(unbalance.unbalance, unbalance.angle)
+        unbalances[self.NAME] = _written(self._position, more)
+        return {f"{path}.unbalances": unbalances, f"{path}.balance_grade": self._grade}
 
 
 def _written(position: float, unbalance: complex) -> dict[str, str]:
@@ -271,15 +274,15 @@ class MoreBow:
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
         """The change at the parts along cosine and sine."""
-        own = _shaft(case, self._shaft).bow or BowInput()
-        bow = rect(own.amplitude, own.angle) + complex(values[0], values[1])
+        present = _shaft(case, self._shaft).bow or BowInput()
+        bow = rect(present.amplitude, present.angle) + complex(values[0], values[1])
         stated: dict[str, object] = {"amplitude": f"{abs(bow)!r} m", "angle": f"{phase(bow)!r} rad"}
-        if own.position is not None:
-            stated["position"] = f"{own.position!r} m"
-        if own.temperature_difference is not None:
+        if present.position is not None:
+            stated["position"] = f"{present.position!r} m"
+        if present.temperature_difference is not None:
             stated |= {
-                "temperature_difference": f"{own.temperature_difference!r} K",
-                "hot_side": f"{own.hot_side!r} rad",
+                "temperature_difference": f"{present.temperature_difference!r} K",
+                "hot_side": f"{present.hot_side!r} rad",
             }
         return {f"drivetrain.shafts.{self._shaft}.bow": stated}
 
@@ -287,24 +290,24 @@ class MoreBow:
 class Turned:
     """Adds to an amplitude whose angle stands at the same path with ``_angle``."""
 
-    def __init__(self, path: str, now: complex) -> None:
-        self._path, self._now = path, now
+    def __init__(self, path: str, stated: complex) -> None:
+        self._path, self._stated = path, stated
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
         """The change at the parts along cosine and sine."""
-        whole = self._now + complex(values[0], values[1])
+        whole = self._stated + complex(values[0], values[1])
         return {self._path: abs(whole), f"{self._path}_angle": phase(whole)}
 
 
 class MoreAngle:
     """Adds to the angle between two axes, across and upwards."""
 
-    def __init__(self, at: str, now: tuple[float, float]) -> None:
-        self._at, self._now = at, now
+    def __init__(self, path: str, stated: tuple[float, float]) -> None:
+        self._path, self._stated = path, stated
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
         """The change at what is added to both."""
         return {
-            f"{self._at}.cold_angle_lateral": self._now[0] + values[0],
-            f"{self._at}.cold_angle_vertical": self._now[1] + values[1],
+            f"{self._path}.cold_angle_lateral": self._stated[0] + values[0],
+            f"{self._path}.cold_angle_vertical": self._stated[1] + values[1],
         }

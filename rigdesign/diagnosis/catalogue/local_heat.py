@@ -43,35 +43,35 @@ DRAUGHTY = 0.10
 class _Times:
     """Multiplies the value at a path by one more than the excess."""
 
-    def __init__(self, path: str, now: float) -> None:
-        self._path, self._now = path, now
+    def __init__(self, path: str, stated: float) -> None:
+        self._path, self._stated = path, stated
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
-        return {self._path: self._now * (1.0 + values[0])}
+        return {self._path: self._stated * (1.0 + values[0])}
 
 
 class _Starved:
     """Takes a share of its oil from the film of a bearing."""
 
-    def __init__(self, path: str, now: float) -> None:
-        self._path, self._now = path, now
+    def __init__(self, path: str, stated: float) -> None:
+        self._path, self._stated = path, stated
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
-        return {self._path: self._now * (1.0 - values[0])}
+        return {self._path: self._stated * (1.0 - values[0])}
 
 
 @of_gearbox(housing=True)
 def single_bearings(part: GearboxPart) -> Iterator[Effect]:
     """Friction, oil and shell joint of every bearing by itself."""
     for name, bearing in part.box.bearings.items():
-        at, label = f"{part.path}.bearings.{name}", f"{part.name}.{name}"
+        path, label = f"{part.path}.bearings.{name}", f"{part.name}.{name}"
         yield Effect(
             name=f"one_bearing_loss:{label}",
             title=f"friction of the bearing {label} alone",
             family=LOSS,
             signature="one shell and its end of the shaft warmer, drive torque higher; the other bearings as before",
             parameters=(Parameter(name="excess", unit="", low=-0.5, high=TIGHT, source=PRACTICE),),
-            change=_Times(f"{at}.friction_factor", bearing.friction_factor),
+            change=_Times(f"{path}.friction_factor", bearing.friction_factor),
             linear=True,
             matters=UNEVEN,
         )
@@ -82,7 +82,7 @@ def single_bearings(part: GearboxPart) -> Iterator[Effect]:
                 family=ONE_FEED,
                 signature="one shell warmer with the same oil outlet, drive torque slightly lower",
                 parameters=(share("share", 0.8),),
-                change=_Starved(f"{at}.feed_share", bearing.feed_share),
+                change=_Starved(f"{path}.feed_share", bearing.feed_share),
                 matters=0.05,
             )
             yield Effect(
@@ -93,7 +93,7 @@ def single_bearings(part: GearboxPart) -> Iterator[Effect]:
                 parameters=(
                     Parameter(name="resistance", unit="m2 K/W", low=0.0, high=LOOSE, source=PRACTICE),
                 ),
-                change=Resistance({f"{at}.shell_conductance": bearing.shell_conductance}),
+                change=Resistance({f"{path}.shell_conductance": bearing.shell_conductance}),
                 matters=PRESSED,
             )
 
@@ -106,11 +106,11 @@ class _OneSide:
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
         paths = case.gearboxes[self._path.split(".")[1]].oil_paths
-        now, more = paths.leak_warm_cold, values[0]
+        leak, more = paths.leak_warm_cold, values[0]
         if more <= 0.0:
             return {}
-        front = (now * paths.leak_front_share + more * self._front) / (now + more)
-        return {f"{self._path}.leak_warm_cold": now + more, f"{self._path}.leak_front_share": front}
+        front = (leak * paths.leak_front_share + more * self._front) / (leak + more)
+        return {f"{self._path}.leak_warm_cold": leak + more, f"{self._path}.leak_front_share": front}
 
 
 @of_gearbox(housing=True)
@@ -135,12 +135,12 @@ def leaks_by_side(part: GearboxPart) -> Iterator[Effect]:
 class _OneWall:
     """Multiplies the factor of one wall by one more than the excess."""
 
-    def __init__(self, path: str, now: Mapping[str, float], wall: str) -> None:
-        self._path, self._now, self._wall = path, now, wall
+    def __init__(self, path: str, stated: Mapping[str, float], wall: str) -> None:
+        self._path, self._stated, self._wall = path, stated, wall
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
-        factor = self._now.get(self._wall, 1.0) * (1.0 + values[0])
-        return {self._path: {**self._now, self._wall: factor}}
+        factor = self._stated.get(self._wall, 1.0) * (1.0 + values[0])
+        return {self._path: {**self._stated, self._wall: factor}}
 
 
 @of_gearbox(housing=True)

@@ -59,30 +59,30 @@ class Traces:
         trace counting as much in each assembly: one may be read far more exactly than the other. What within its bounds
         leaves less than `REACHES` of the trace cannot stand for it; offset and scale of one sensor are one finding.
         """
-        own = next(one for one in self._own if one.hypothesis.name == explanation)
-        name = own.hypothesis.parts[0]
-        trace = _answers(own.hypothesis, np.array([size]))[0]
-        found: dict[str, float] = {}
-        for one in self._single(families):
-            other = one.hypothesis.parts[0]
-            if other == name or _of_one_sensor(own, one):
+        named = next(evidence for evidence in self._own if evidence.hypothesis.name == explanation)
+        name = named.hypothesis.parts[0]
+        trace = _answers(named.hypothesis, np.array([size]))[0]
+        correlations: dict[str, float] = {}
+        for evidence in self._single(families):
+            other = evidence.hypothesis.parts[0]
+            if other == name or _of_one_sensor(named, evidence):
                 continue
-            for plane in _planes(one.hypothesis, trace):
+            for plane in _planes(evidence.hypothesis, trace):
                 correlation = _cosine(plane, trace)
                 if correlation > ALIAS and _cosine(*self._by_assembly(plane, trace)) > ALIAS:
-                    found[other] = max(found.get(other, 0.0), correlation)
-        return sorted(found.items(), key=lambda pair: -pair[1])
+                    correlations[other] = max(correlations.get(other, 0.0), correlation)
+        return sorted(correlations.items(), key=lambda pair: -pair[1])
 
     def of(self, name: str) -> Evidence:
         """The best explanation by a name alone."""
-        return next(one for one in self._own if one.hypothesis.parts == (name,))
+        return next(evidence for evidence in self._own if evidence.hypothesis.parts == (name,))
 
     @property
     def _own(self) -> list[Evidence]:
         return [*self._single(NAMED), *self.contradicted]
 
     def _single(self, families: frozenset[str]) -> list[Evidence]:
-        return [one for one in self.explanations if one.hypothesis.family in families]
+        return [evidence for evidence in self.explanations if evidence.hypothesis.family in families]
 
     def _by_assembly(self, plane: Array, trace: Array) -> tuple[Array, Array]:
         """Columns (n, k) and a trace (n,), scaled so that no assembly in which the trace is seen outweighs another."""
@@ -92,10 +92,10 @@ class Traces:
         lower, matrix = self.space.covariance.lower, self.space.covariance.matrix
         both = lower @ np.column_stack([plane, trace])
         for state in states:
-            rows = np.array([row for row, one in enumerate(self.assembly) if one == state])
+            rows = np.array([row for row, assembly in enumerate(self.assembly) if assembly == state])
             factor = np.linalg.cholesky(matrix[np.ix_(rows, rows)])
-            own = solve_triangular(factor, both[rows], lower=True, check_finite=False)
-            both[rows] = own / max(1.0, float(np.linalg.norm(own[:, -1])) / SEEN)
+            white = solve_triangular(factor, both[rows], lower=True, check_finite=False)
+            both[rows] = white / max(1.0, float(np.linalg.norm(white[:, -1])) / SEEN)
         return both[:, :-1], both[:, -1]
 
 
@@ -121,7 +121,7 @@ def _of_one_sensor(first: Evidence, second: Evidence) -> bool:
     if {first.hypothesis.family, second.hypothesis.family} != {"sensor"}:
         return False
     kinds, places = zip(
-        *(one.hypothesis.parts[0].partition(":")[::2] for one in (first, second)), strict=True
+        *(evidence.hypothesis.parts[0].partition(":")[::2] for evidence in (first, second)), strict=True
     )
     return len({kind.rpartition("_")[0] for kind in kinds}) == len(set(places)) == 1
 
@@ -159,29 +159,29 @@ class Agreement:
     errors: Mapping[str, float]
 
     def objection(
-        self, one: Evidence, beside: Sequence[Evidence], least: float, admitted: float = 0.0
+        self, evidence: Evidence, beside: Sequence[Evidence], least: float, admitted: float = 0.0
     ) -> str:
         """What disagrees on the size of an effect, in words; empty where nothing does.
 
         beside : causes that are in the model with sizes of their own; least : probability of sizes that differ as
             much, below which they are of different things; admitted : least relative error of the answer in a group
         """
-        kind = one.hypothesis.parts[0].split(":")[0].split("/")[0]
+        kind = evidence.hypothesis.parts[0].split(":")[0].split("/")[0]
         share = max(self.errors.get(kind, self.errors.get("", 0.0)), admitted)
-        for what, groups in (
+        for grouping, groups in (
             ("channels", self.channels),
             ("operating points", self.points),
         ):
-            if agreement(self.space, one, groups, share, beside) < least:
-                return f"its size is not the same for all {what}"
+            if agreement(self.space, evidence, groups, share, beside) < least:
+                return f"its size is not the same for all {grouping}"
         return ""
 
-    def companion(self, one: Evidence) -> Evidence | None:
+    def companion(self, evidence: Evidence) -> Evidence | None:
         """The cause that goes with an effect in the best explanation that holds it.
 
         None where that holds the effect alone, or where the cause takes too much of it away.
         """
-        name = one.hypothesis.name
+        name = evidence.hypothesis.name
         for best in self.evidence:
             names = best.hypothesis.name.split(JOIN)
             if name in names:
@@ -190,14 +190,14 @@ class Agreement:
         else:
             return None
         companion = next((other for other in self.evidence if [other.hypothesis.name] == names), None)
-        if companion is None or best.gain - companion.gain < APART * one.gain:
+        if companion is None or best.gain - companion.gain < APART * evidence.gain:
             return None
         return companion
 
 
 def agreement(
     space: Whitened,
-    one: Evidence,
+    evidence: Evidence,
     groups: Sequence[Hashable],
     share: float,
     beside: Sequence[Evidence] = (),
@@ -210,10 +210,10 @@ def agreement(
     groups : (n,) group of each number; share : relative error of the model's answer in a group
     beside : causes that are in the model with sizes of their own
     """
-    own = tuple(name for cause in (one, *beside) for name in cause.hypothesis.own)
-    release = release_of(space, own)
+    effects = tuple(name for cause in (evidence, *beside) for name in cause.hypothesis.own)
+    release = release_of(space, effects)
     number = numbered(groups)
-    answer = space.covariance.lower @ one.answer
+    answer = space.covariance.lower @ evidence.answer
     split = np.where(number[:, None] == np.arange(number.max() + 1), answer[:, None], 0.0)
     columns = space.covariance.whiten(split)
     columns = columns[:, np.linalg.norm(columns, axis=0) > FAINT]
@@ -221,7 +221,7 @@ def agreement(
     if count < 2:
         return 1.0
     columns = np.hstack([columns, *(cause.columns for cause in beside)])
-    residual = space.freed(own)
+    residual = space.freed(effects)
     gram, load = release.product(columns, columns), release.product(columns, residual)
     inverse = np.linalg.pinv(gram, hermitian=True)
     fit = inverse @ load
@@ -277,17 +277,17 @@ class Claim:
     @property
     def insignificant(self) -> bool:
         """Whether all names that the search gave are too small to matter."""
-        return bool(self.refused) and all(one.slight for one in self.refused)
+        return bool(self.refused) and all(refusal.slight for refusal in self.refused)
 
     @property
     def contradicted(self) -> bool:
         """Whether the data or the full model speak against a name that the search gave."""
-        return any(one.verdict == "unknown_located" for one in self.refused)
+        return any(refusal.verdict == "unknown_located" for refusal in self.refused)
 
 
 def claim(
     decision: Decision,
-    found: Sequence[Evidence],
+    explanations: Sequence[Evidence],
     traces: Traces,
     proof: Proof,
     fitted: Callable[[Sequence[Evidence]], JointFit],
@@ -296,7 +296,7 @@ def claim(
 ) -> Claim:
     """Hold the names of a decision against their sizes, the points held out and all other effects.
 
-    found : the explanation of every name; traces : of all in the first look; fitted : the joint fit of some
+    explanations : of every name; traces : of all in the first look; fitted : the joint fit of some
     agreement : of channels and operating points on sizes
     """
     refused: list[Refusal] = []
@@ -307,19 +307,19 @@ def claim(
             decision = Decision(verdict="unknown_located", named=(), reason=reason)
     if decision.verdict != "named":
         return _without(decision, proof, refused)
-    left = list(found)
+    left = list(explanations)
     while left:
         fit = fitted(left)
         doubt = _weakest(left, fit, proof) or _disputed(left, fit, agreement)
         if doubt is None:
             break
         refused.append(doubt)
-        left = [one for one in left if one.hypothesis.name != doubt.explanation]
+        left = [evidence for evidence in left if evidence.hypothesis.name != doubt.explanation]
     if not left:
         return _without(_unclaimed(decision, refused), proof, refused)
-    slight = any(one.slight for one in refused)
+    slight = any(refusal.slight for refusal in refused)
     if slight and (misfit := _misfit(traces.space, left, fit, thresholds)):
-        refused += [_misfitting(one, _sizes(left, fit), misfit) for one in left]
+        refused += [_misfitting(evidence, _sizes(left, fit), misfit) for evidence in left]
         return _without(_unclaimed(decision, refused), proof, refused)
     sizes = _sizes(left, fit)
     group = _group(left, sizes, traces)
@@ -333,12 +333,12 @@ def claim(
         unconfirmed = f"the case with {' and '.join(sizes)} does not run in full: {error}"
     whole = proof.gap(answer)
     if not whole.shrunk:
-        refused += [_unproven(one, sizes, whole) for one in left]
+        refused += [_unproven(evidence, sizes, whole) for evidence in left]
         return _without(_unclaimed(decision, refused), proof, refused)
-    named = tuple(dict.fromkeys(part for one in left for part in one.hypothesis.parts))
+    named = tuple(dict.fromkeys(part for evidence in left for part in evidence.hypothesis.parts))
     fits: dict[str, JointFit] = {}
     if group is not None:
-        others = [one for one in left if one.hypothesis.parts[0] in group.apart]
+        others = [evidence for evidence in left if evidence.hypothesis.parts[0] in group.apart]
         fits = {member: fitted([*others, traces.of(member)]) for member in group.named}
     return Claim(
         decision=group or replace(decision, named=named),
@@ -358,10 +358,10 @@ def withdrawn(claimed: Claim, proof: Proof, reason: str) -> Claim:
     return _without(decision, proof, claimed.refused)
 
 
-def refusals(found: Sequence[Evidence], fit: JointFit, reason: str) -> tuple[Refusal, ...]:
+def refusals(explanations: Sequence[Evidence], fit: JointFit, reason: str) -> tuple[Refusal, ...]:
     """Of names that other numbers overrule."""
-    sizes = _sizes(found, fit)
-    return tuple(_refusal(one, sizes, "unknown_located", reason) for one in found)
+    sizes = _sizes(explanations, fit)
+    return tuple(_refusal(evidence, sizes, "unknown_located", reason) for evidence in explanations)
 
 
 def _without(decision: Decision, proof: Proof, refused: Sequence[Refusal]) -> Claim:
@@ -378,14 +378,18 @@ def _without(decision: Decision, proof: Proof, refused: Sequence[Refusal]) -> Cl
     )
 
 
-def _sizes(found: Sequence[Evidence], fit: JointFit) -> Sizes:
-    return {one.hypothesis.name: size for one, size in zip(found, fit.coordinates, strict=True)}
+def _sizes(explanations: Sequence[Evidence], fit: JointFit) -> Sizes:
+    return {
+        evidence.hypothesis.name: size for evidence, size in zip(explanations, fit.coordinates, strict=True)
+    }
 
 
-def _refusal(one: Evidence, sizes: Sizes, verdict: Verdict, reason: str, gap: Gap | None = None) -> Refusal:
-    name = one.hypothesis.name
+def _refusal(
+    evidence: Evidence, sizes: Sizes, verdict: Verdict, reason: str, gap: Gap | None = None
+) -> Refusal:
+    name = evidence.hypothesis.name
     return Refusal(
-        name=one.hypothesis.parts[0],
+        name=evidence.hypothesis.parts[0],
         explanation=name,
         coordinates=sizes[name],
         verdict=verdict,
@@ -394,50 +398,54 @@ def _refusal(one: Evidence, sizes: Sizes, verdict: Verdict, reason: str, gap: Ga
     )
 
 
-def _unproven(one: Evidence, sizes: Sizes, whole: Gap) -> Refusal:
+def _unproven(evidence: Evidence, sizes: Sizes, whole: Gap) -> Refusal:
     """Of a name that does not shrink the gap by more than its scatter, or with others does not."""
-    reason = f"with {one.hypothesis.name} in the model the gap {gap_in_words(whole)}"
-    return _refusal(one, sizes, "unknown_located" if whole.grown else "too_small", reason, whole)
+    reason = f"with {evidence.hypothesis.name} in the model the gap {gap_in_words(whole)}"
+    return _refusal(evidence, sizes, "unknown_located" if whole.grown else "too_small", reason, whole)
 
 
 def _misfit(space: Whitened, left: Sequence[Evidence], fit: JointFit, thresholds: Thresholds) -> str:
     """What the names that are left do not explain without those of a slight size, in words; empty where that is
     little."""
-    owns = [own for one in left for own in one.hypothesis.own]
-    release, rest = release_of(space, owns), space.freed(owns) - fit.answer
+    effects = [effect for evidence in left for effect in evidence.hypothesis.own]
+    release, rest = release_of(space, effects), space.freed(effects) - fit.answer
     square = WhitenedSquare(value=space.chi_square, count=len(rest))
     return square.misfit(space.chi_square - float(release.product(rest, rest)), thresholds)
 
 
-def _misfitting(one: Evidence, sizes: Sizes, misfit: str) -> Refusal:
+def _misfitting(evidence: Evidence, sizes: Sizes, misfit: str) -> Refusal:
     """Of a name that leaves too much without those that were refused."""
-    reason = f"after {one.hypothesis.name} alone the residual is {misfit}"
-    return _refusal(one, sizes, "unknown_located", reason)
+    reason = f"after {evidence.hypothesis.name} alone the residual is {misfit}"
+    return _refusal(evidence, sizes, "unknown_located", reason)
 
 
-def _weakest(found: Sequence[Evidence], fit: JointFit, proof: Proof) -> Refusal | None:
+def _weakest(explanations: Sequence[Evidence], fit: JointFit, proof: Proof) -> Refusal | None:
     """The first name too small to matter, else that of those not proven which shrinks the gap least; None if all hold.
 
     Each is proven by itself, with the others in the model: by the stored runs.
     """
-    sizes = _sizes(found, fit)
-    for one in found:
-        if text := too_little(proof.residuals.effects, one.hypothesis.name, sizes[one.hypothesis.name]):
-            return _refusal(one, sizes, "too_small", text)
+    sizes = _sizes(explanations, fit)
+    for evidence in explanations:
+        if text := too_little(
+            proof.residuals.effects, evidence.hypothesis.name, sizes[evidence.hypothesis.name]
+        ):
+            return _refusal(evidence, sizes, "too_small", text)
     if not proof.points:
         running = len(proof.residuals.library.settings)
         text = f"none of {running} operating points could be held out to verify it; at least {LEAST_POINTS} are needed"
-        reason = f"{found[0].hypothesis.name} fits best, but {text}"
-        return _refusal(found[0], sizes, "data_insufficient", reason)
+        reason = f"{explanations[0].hypothesis.name} fits best, but {text}"
+        return _refusal(explanations[0], sizes, "data_insufficient", reason)
     gaps = []
-    for one in found:
-        name = one.hypothesis.name
+    for evidence in explanations:
+        name = evidence.hypothesis.name
         others = proof.stored({other: size for other, size in sizes.items() if other != name})
         gaps.append(proof.gap(proof.stored({name: sizes[name]}), others))
-    least = min(range(len(found)), key=lambda place: gaps[place].fall / max(gaps[place].scatter, 1e-300))
+    least = min(
+        range(len(explanations)), key=lambda place: gaps[place].fall / max(gaps[place].scatter, 1e-300)
+    )
     if gaps[least].shrunk:
         return None
-    return _unproven(found[least], sizes, gaps[least])
+    return _unproven(explanations[least], sizes, gaps[least])
 
 
 UNEQUAL = 0.35
@@ -448,21 +456,26 @@ DISAGREEMENT = 1e-6
 """Probability of sizes that differ as much between channels, or between points, below which no name is given."""
 
 
-def _disputed(found: Sequence[Evidence], fit: JointFit, agreement: Agreement) -> Refusal | None:
+def _disputed(explanations: Sequence[Evidence], fit: JointFit, agreement: Agreement) -> Refusal | None:
     """The first name that channels or operating points want in different sizes; None if they agree on all."""
-    for one in found:
-        if text := _disagreement(one, [other for other in found if other is not one], agreement):
+    for evidence in explanations:
+        if text := _disagreement(
+            evidence, [other for other in explanations if other is not evidence], agreement
+        ):
             return _refusal(
-                one, _sizes(found, fit), "unknown_located", f"{one.hypothesis.name} fits best, but {text}"
+                evidence,
+                _sizes(explanations, fit),
+                "unknown_located",
+                f"{evidence.hypothesis.name} fits best, but {text}",
             )
     return None
 
 
-def _disagreement(one: Evidence, others: Sequence[Evidence], agreement: Agreement) -> str:
-    companion = agreement.companion(one)
+def _disagreement(evidence: Evidence, others: Sequence[Evidence], agreement: Agreement) -> str:
+    companion = agreement.companion(evidence)
     names = {other.hypothesis.name for other in others}
     beside = [*others, *([] if companion is None or companion.hypothesis.name in names else [companion])]
-    return agreement.objection(one, beside, DISAGREEMENT, UNEQUAL)
+    return agreement.objection(evidence, beside, DISAGREEMENT, UNEQUAL)
 
 
 def too_little(effects: Sequence[Effect], explanation: str, coordinates: Sequence[float]) -> str:
@@ -481,17 +494,18 @@ def _unclaimed(decision: Decision, refused: Sequence[Refusal]) -> Decision:
     if not refused:
         reason = f"{decision.named[0]} is part of every probable explanation, but of none alone"
         return Decision(verdict="unknown_located", named=(), reason=reason)
-    worst = next((one for one in refused if one.verdict == "unknown_located"), refused[-1])
+    worst = next((refusal for refusal in refused if refusal.verdict == "unknown_located"), refused[-1])
     return Decision(verdict=worst.verdict, named=(), reason=worst.reason)
 
 
-def _group(found: Sequence[Evidence], sizes: Sizes, traces: Traces) -> Decision | None:
+def _group(explanations: Sequence[Evidence], sizes: Sizes, traces: Traces) -> Decision | None:
     """The verdict where another effect has the signature of a name; None where every name stands alone.
 
     The group is that of the first such name; the reason names those of further ones.
     """
     rivals = {
-        one.hypothesis.parts[0]: traces.like(one.hypothesis.name, sizes[one.hypothesis.name]) for one in found
+        evidence.hypothesis.parts[0]: traces.like(evidence.hypothesis.name, sizes[evidence.hypothesis.name])
+        for evidence in explanations
     }
     unclear = [name for name, others in rivals.items() if others]
     if not unclear:

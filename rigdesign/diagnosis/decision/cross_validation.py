@@ -121,17 +121,17 @@ class FullRun:
         names = Names(self.effects, ())
         sized = [names.sized(name, size, [(value, value) for value in size]) for name, size in sizes.items()]
         fitted = [
-            Fitted(effect=one.entry, values=one.values, tooth=one.tooth)
-            for one in sized
-            if isinstance(one.entry, Effect)
+            Fitted(effect=estimate.entry, values=estimate.values, tooth=estimate.tooth)
+            for estimate in sized
+            if isinstance(estimate.entry, Effect)
         ]
         points = {feature.setting for feature in features}
         sensors = {feature.channel for feature in features}
-        settings = [one for one in self.settings if one.name in points]
-        channels = [one for one in self.channels if one.name in sensors]
+        settings = [setting for setting in self.settings if setting.name in points]
+        channels = [channel for channel in self.channels if channel.name in sensors]
         cases = (self.case, patched_case(self.case, fitted))
         self.say(
-            f"full model at {', '.join(one.name for one in settings)}, without and with {' and '.join(sizes)}"
+            f"full model at {', '.join(setting.name for setting in settings)}, without and with {' and '.join(sizes)}"
         )
         with BackgroundTasks(
             [partial(predict, case, settings, channels, circuit=measured_against(channels)) for case in cases]
@@ -161,8 +161,8 @@ class Proof:
     def rows(self) -> NDArray[np.intp]:
         """Places of the numbers at the points held out."""
         aside = set(self.points)
-        found = [row for row, one in enumerate(self.residuals.features) if one.setting in aside]
-        return np.array(found, dtype=np.intp)
+        rows = [row for row, feature in enumerate(self.residuals.features) if feature.setting in aside]
+        return np.array(rows, dtype=np.intp)
 
     def stored(self, sizes: Sizes) -> Array:
         """(n,) what effects and sensors at these sizes add to all kept numbers, by the stored runs."""
@@ -174,14 +174,14 @@ class Proof:
             None, residuals.features, known, residuals.library.responses, residuals.teeth_a_turn, 0.0
         )
         answer = np.zeros(len(residuals.features))
-        for one in (*effects, *sensor(None, errors)):
-            if one.name not in sizes:
+        for hypothesis in (*effects, *sensor(None, errors)):
+            if hypothesis.name not in sizes:
                 continue
-            size = np.array(sizes[one.name])
-            if one.curve is not None:
-                answer += one.curve.at(size)[0]
-            elif one.columns.size:
-                answer += one.columns @ size
+            size = np.array(sizes[hypothesis.name])
+            if hypothesis.curve is not None:
+                answer += hypothesis.curve.at(size)[0]
+            elif hypothesis.columns.size:
+                answer += hypothesis.columns @ size
         return answer
 
     def again(self, sizes: Sizes) -> Array:

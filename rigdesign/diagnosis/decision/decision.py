@@ -50,22 +50,23 @@ def posterior(
     """
     logs = [float(np.log(priors["none"]))]
     logs += [
-        one.log_bayes + float(np.log(priors[one.hypothesis.family] / members[one.hypothesis.family]))
-        for one in evidence
+        explanation.log_bayes
+        + float(np.log(priors[explanation.hypothesis.family] / members[explanation.hypothesis.family]))
+        for explanation in evidence
     ]
     total = float(logsumexp(logs))
     masses = {"none": float(np.exp(logs[0] - total))}
     inclusion: dict[str, float] = {}
     families = {"none": masses["none"]}
     best, highest = None, logs[0]
-    for one, log in zip(evidence, logs[1:], strict=True):
+    for explanation, log in zip(evidence, logs[1:], strict=True):
         mass = float(np.exp(log - total))
-        masses[one.hypothesis.name] = mass
-        families[one.hypothesis.family] = families.get(one.hypothesis.family, 0.0) + mass
-        for part in dict.fromkeys(one.hypothesis.parts):
+        masses[explanation.hypothesis.name] = mass
+        families[explanation.hypothesis.family] = families.get(explanation.hypothesis.family, 0.0) + mass
+        for part in dict.fromkeys(explanation.hypothesis.parts):
             inclusion[part] = inclusion.get(part, 0.0) + mass
         if log > highest:
-            best, highest = one, log
+            best, highest = explanation, log
     return Posterior(masses=masses, inclusion=inclusion, families=families, best=best)
 
 
@@ -73,14 +74,19 @@ def mass_of_any(evidence: Sequence[Evidence], weights: Posterior, parts: Collect
     """Posterior mass of all explanations that hold at least one of some parts."""
     wanted = frozenset(parts)
     return sum(
-        weights.masses[one.hypothesis.name] for one in evidence if not wanted.isdisjoint(one.hypothesis.parts)
+        weights.masses[explanation.hypothesis.name]
+        for explanation in evidence
+        if not wanted.isdisjoint(explanation.hypothesis.parts)
     )
 
 
 def gain_of(parts: Collection[str], evidence: Sequence[Evidence]) -> float:
     """Largest fall of the whitened square by some parts with nothing beside them; zero without an explanation."""
     wanted = frozenset(parts)
-    return max((one.gain for one in evidence if wanted == frozenset(one.hypothesis.parts)), default=0.0)
+    return max(
+        (explanation.gain for explanation in evidence if wanted == frozenset(explanation.hypothesis.parts)),
+        default=0.0,
+    )
 
 
 UNNAMED = frozenset({"unmodelled", "local"})
@@ -105,8 +111,10 @@ def decide(
         return Decision(
             verdict="unknown_located", named=(), reason=f"after the best explanation the residual is {misfit}"
         )
-    known = [one for one in evidence if _credible(one, evidence, candidates, thresholds)]
-    leads = best.log_bayes - max((one.log_bayes for one in known), default=0.0)
+    known = [
+        explanation for explanation in evidence if _credible(explanation, evidence, candidates, thresholds)
+    ]
+    leads = best.log_bayes - max((explanation.log_bayes for explanation in known), default=0.0)
     if weights.masses["none"] < 0.5 and leads > thresholds.catalogue:
         if losses := losses_of_one_oil(evidence, weights, candidates, thresholds):
             return losses
@@ -146,13 +154,17 @@ def _beyond(
 ) -> Decision:
     """The verdict where what explains the data best is no effect of the catalogue alone; said of a cause outside only
     where that explains them better by itself."""
-    by_itself = [one for one in evidence if candidates.effects.isdisjoint(one.hypothesis.parts)]
-    leads = max((one.log_bayes for one in by_itself), default=0.0)
-    outside = leads - max((one.log_bayes for one in known), default=0.0) > thresholds.catalogue
+    by_itself = [
+        explanation for explanation in evidence if candidates.effects.isdisjoint(explanation.hypothesis.parts)
+    ]
+    leads = max((explanation.log_bayes for explanation in by_itself), default=0.0)
+    outside = (
+        leads - max((explanation.log_bayes for explanation in known), default=0.0) > thresholds.catalogue
+    )
     if outside:
         reason = "a cause outside the catalogue explains the data better than any effect of the catalogue"
     else:
-        best = max(evidence, key=lambda one: one.log_bayes)
+        best = max(evidence, key=lambda explanation: explanation.log_bayes)
         both = (
             in_words(name.removeprefix(UNKNOWN), *sizes[:1]) if name.startswith(UNKNOWN) else name
             for name, sizes in best.members
@@ -181,7 +193,7 @@ def _named(
 
 
 def _credible(
-    one: Evidence, evidence: Sequence[Evidence], candidates: Candidates, thresholds: Thresholds
+    explanation: Evidence, evidence: Sequence[Evidence], candidates: Candidates, thresholds: Thresholds
 ) -> bool:
     """Of the catalogue alone; an error of a sensor by itself or with a small share, not to mend what something else
     leaves.
@@ -189,7 +201,7 @@ def _credible(
     What the model answers wrongly to a change of the circuit stays as an order of no known source: with a small share
     it does not make the change a cause outside the catalogue.
     """
-    parts = frozenset(one.hypothesis.parts)
+    parts = frozenset(explanation.hypothesis.parts)
     known = parts & candidates.effects
     unnamed = parts - known
     answered_wrongly = known <= candidates.circuit and all(part.startswith(ORDER_CAUSE) for part in unnamed)
@@ -199,7 +211,7 @@ def _credible(
     if len(parts) == 1 or others == parts:
         return True
     share = thresholds.share if known == parts else thresholds.share_loop
-    return one.gain - gain_of(others, evidence) < share * one.gain
+    return explanation.gain - gain_of(others, evidence) < share * explanation.gain
 
 
 BY_ITSELF = 0.7
@@ -278,10 +290,10 @@ def changes_of_the_circuit(
 ) -> tuple[str, ...]:
     """Changes of the power circuit that explain, alone, as much as a named one does, to the share that no answer of the
     model is more exact than; itself first, the others by what they explain."""
-    own = gain_of({name}, evidence)
-    if own <= 0.0:
+    gain = gain_of({name}, evidence)
+    if gain <= 0.0:
         return (name,)
-    least = (1.0 - thresholds.share_loop) * own
+    least = (1.0 - thresholds.share_loop) * gain
     gains = {part: gain_of({part}, evidence) for part in (candidates.circuit & candidates.open) - {name}}
     others = sorted((part for part in gains if gains[part] >= least), key=lambda part: (-gains[part], part))
     return (name, *others)

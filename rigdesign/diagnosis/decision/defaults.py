@@ -54,11 +54,11 @@ class Thresholds:
     share: float = 0.05
     share_loop: float = 0.25
 
-    def exceeds_healthy(self, one: Evidence, orders: frozenset[str]) -> bool:
+    def exceeds_healthy(self, explanation: Evidence, orders: frozenset[str]) -> bool:
         """Whether an explanation has more evidence than healthy rigs have given; ``orders``: causes of orders."""
-        parts = frozenset(one.hypothesis.parts)
+        parts = frozenset(explanation.hypothesis.parts)
         floor = self.evidence if orders.isdisjoint(parts) else self.evidence_loop
-        return one.log_bayes >= floor * len(parts)
+        return explanation.log_bayes >= floor * len(parts)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -310,8 +310,10 @@ class Calibration:
         """Amplitudes of the model alone: with a file those of the rig's own sets, else as wide as real models are."""
         if self.origin.kind == "file":
             return self.amplitudes
-        own = self.amplitudes.as_dict()
-        return self.amplitudes.with_values({n: max(own[n], least) for n, least in self.least_alone.items()})
+        values = self.amplitudes.as_dict()
+        return self.amplitudes.with_values(
+            {n: max(values[n], least) for n, least in self.least_alone.items()}
+        )
 
     def thresholds(self, baseline: bool) -> Thresholds:
         """Those of a set with a baseline or without one."""

@@ -45,14 +45,14 @@ class Fitted:
 
     def only(self, keep: Sequence[bool]) -> "Fitted":
         """Some of the names."""
-        found = tuple(one for one, kept in zip(self.found, keep, strict=True) if kept)
-        names = {one.hypothesis.name for one in found}
+        explanations = tuple(evidence for evidence, kept in zip(self.found, keep, strict=True) if kept)
+        names = {evidence.hypothesis.name for evidence in explanations}
         fit = replace(
             self.fit,
-            sizes=tuple(one for one in self.fit.sizes if one.effect in names),
-            coordinates=tuple(one for one, kept in zip(self.fit.coordinates, keep, strict=True) if kept),
+            sizes=tuple(size for size in self.fit.sizes if size.effect in names),
+            coordinates=tuple(size for size, kept in zip(self.fit.coordinates, keep, strict=True) if kept),
         )
-        return replace(self, found=found, fit=fit)
+        return replace(self, found=explanations, fit=fit)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,7 +94,7 @@ class Numbers:
             )
         return self._proofs[tier]
 
-    def claim(self, look: Look, decision: Decision, found: Sequence[Evidence]) -> Claim:
+    def claim(self, look: Look, decision: Decision, explanations: Sequence[Evidence]) -> Claim:
         """What of a decision with the explanations it found may be claimed.
 
         Where all that is named is too small to matter, it is a nuisance: a group that the evaluation with it in the
@@ -103,7 +103,7 @@ class Numbers:
         fit = partial(fitted, look.space, calibration=self.calibration)
         traces, proof = self.traces(look), self.proof(look.tier)
         agreement = agreement_in(look, self.calibration)
-        claimed = claim(decision, found, traces, proof, fit, look.criteria.thresholds, agreement)
+        claimed = claim(decision, explanations, traces, proof, fit, look.criteria.thresholds, agreement)
         last = look.evaluations[-1].decision
         if last.verdict == "alias_group" and not claimed.found and claimed.insignificant:
             group = claim(last, (), traces, proof, fit, look.criteria.thresholds, agreement)
@@ -120,11 +120,11 @@ class Numbers:
             return Fitted(found=claimed.found, fit=claimed.fit, fits=claimed.fits)
         traces = self.traces(look)
         members = {name: traces.of(name) for name in claimed.decision.named}
-        fits = {name: fitted(look.space, [one], self.calibration) for name, one in members.items()}
+        fits = {name: fitted(look.space, [member], self.calibration) for name, member in members.items()}
         leader = claimed.decision.named[0]
         return Fitted(found=(members[leader],), fit=fits[leader], fits=fits)
 
-    def contradiction(self, look: Look, found: Sequence[Evidence], fit: JointFit) -> str:
+    def contradiction(self, look: Look, explanations: Sequence[Evidence], fit: JointFit) -> str:
         """What the other domain says against an error of a sensor that a look gives, in words; empty for nothing.
 
         A wrong scale of a torque cell shows in its mean as well as in its orders. What else shows in both is known less
@@ -132,9 +132,9 @@ class Numbers:
         """
         other: Tier = "rotation" if look.tier == "heat" else "heat"
         errors = [
-            (one.hypothesis.name, size)
-            for one, size in zip(found, fit.coordinates, strict=True)
-            if one.hypothesis.family == "sensor"
+            (evidence.hypothesis.name, size)
+            for evidence, size in zip(explanations, fit.coordinates, strict=True)
+            if evidence.hypothesis.family == "sensor"
         ]
         if not errors or look.tier == "all" or not of_tier(self.residuals, other).any():
             return ""
@@ -195,14 +195,19 @@ class Numbers:
             return None
         known = self._explained("heat")
         moving = {effect.claim for effect in self.residuals.effects if effect.family.dynamic}
-        known = replace(known, physical=[one for one in known.physical if moving.isdisjoint(one.parts)])
+        known = replace(
+            known,
+            physical=[hypothesis for hypothesis in known.physical if moving.isdisjoint(hypothesis.parts)],
+        )
         return OtherDomain.of(self._seen("heat")[1], self._explained(tier), known)
 
     def _seen(self, tier: Tier) -> tuple[ResidualProblem, Whitened]:
         """Numbers of a tier at the points that are not held out, and their space; made once."""
         if tier not in self._spaces:
             wanted = of_tier(self.residuals, tier)
-            aside = np.array([one.setting in self.points for one in self.residuals.features], dtype=bool)
+            aside = np.array(
+                [feature.setting in self.points for feature in self.residuals.features], dtype=bool
+            )
             rows = np.flatnonzero(wanted & ~aside).tolist()
             seen = self.residuals.rows(rows)
             self._spaces[tier] = seen, self.problem.cut(self.whole, seen, rows, self.calibration)
@@ -211,8 +216,10 @@ class Numbers:
 
 def _assemblies(residuals: ResidualProblem) -> list[tuple[tuple[str, int], ...]]:
     """(n,) teeth by which meshes were put on further at the point of each number."""
-    found = {one.name: tuple(sorted(one.tooth_offset.items())) for one in residuals.library.settings}
-    return [found.get(feature.setting, ()) for feature in residuals.features]
+    offsets = {
+        setting.name: tuple(sorted(setting.tooth_offset.items())) for setting in residuals.library.settings
+    }
+    return [offsets.get(feature.setting, ()) for feature in residuals.features]
 
 
 # An effect that is probable and not named: what speaks for it, and what has to hold before it is said.
@@ -272,9 +279,11 @@ class Suspicion:
     def of(cls, look: Look, proof: Proof, traces: Traces, calibration: Calibration) -> "Suspicion | None":
         """Of a look; None without any explanation from the catalogue."""
         inclusion = look.first.weights.inclusion
-        known = {one.parts[0] for one in (*look.explanations.physical, *look.explanations.sensor)}
-        alone = [one for one in look.first.evidence if len(one.hypothesis.parts) == 1]
-        single = {one.hypothesis.parts[0]: one for one in reversed(alone)}
+        known = {
+            hypothesis.parts[0] for hypothesis in (*look.explanations.physical, *look.explanations.sensor)
+        }
+        alone = [candidate for candidate in look.first.evidence if len(candidate.hypothesis.parts) == 1]
+        single = {candidate.hypothesis.parts[0]: candidate for candidate in reversed(alone)}
         names = [name for name in inclusion if name in known and name in single]
         if not names:
             return None
@@ -286,9 +295,9 @@ class Suspicion:
         explanation, size = evidence.hypothesis.name, both.coordinates[0]
         if not np.any(size):
             return None
-        owns = [own for one in together for own in one.hypothesis.own]
-        rest = look.space.freed(owns) - both.answer
-        left = float(release_of(look.space, owns).product(rest, rest))
+        effects = [effect for evidence in together for effect in evidence.hypothesis.own]
+        rest = look.space.freed(effects) - both.answer
+        left = float(release_of(look.space, effects).product(rest, rest))
         before = look.space.chi_square - (0.0 if companion is None else companion.gain)
         answer = proof.stored({explanation: size})
         return cls(
@@ -297,7 +306,7 @@ class Suspicion:
             companion=companion,
             fit=replace(
                 both,
-                sizes=tuple(one for one in both.sizes if one.effect == explanation),
+                sizes=tuple(part for part in both.sizes if part.effect == explanation),
                 coordinates=both.coordinates[:1],
             ),
             gain=before - left,
@@ -312,8 +321,8 @@ class Suspicion:
     def group(self) -> tuple[str, ...]:
         """The effect and those that leave its trace, the most probable first."""
         inclusion = self.look.first.weights.inclusion
-        own = self.evidence.hypothesis.parts[0]
-        return (own, *sorted(self.alike, key=lambda name: -inclusion.get(name, 0.0)))
+        suspect = self.evidence.hypothesis.parts[0]
+        return (suspect, *sorted(self.alike, key=lambda name: -inclusion.get(name, 0.0)))
 
     def mass(self, *, unmodelled: bool) -> float:
         """Posterior mass of all explanations that hold one of the group, or an unmodelled cause of its trace."""
@@ -343,8 +352,10 @@ class Suspicion:
     @property
     def stands_for(self) -> str:
         """What outside the catalogue leaves its trace by its nature."""
-        own = self.evidence.hypothesis.parts[0]
-        return next((one.stands_for for one in self.look.residuals.effects if one.claim == own), "")
+        suspect = self.evidence.hypothesis.parts[0]
+        return next(
+            (effect.stands_for for effect in self.look.residuals.effects if effect.claim == suspect), ""
+        )
 
     @property
     def as_named(self) -> Decision:
@@ -377,9 +388,10 @@ def agreement_in(look: Look, calibration: Calibration) -> Agreement:
         space=look.space,
         evidence=look.first.evidence,
         channels=[
-            "natural frequencies" if mode else one.channel for one, mode in zip(features, modes, strict=True)
+            "natural frequencies" if mode else feature.channel
+            for feature, mode in zip(features, modes, strict=True)
         ],
-        points=[one.setting for one in features],
+        points=[feature.setting for feature in features],
         errors=calibration.signature_error,
     )
 
@@ -392,8 +404,8 @@ def suspected(look: Look, proof: Proof, traces: Traces, calibration: Calibration
 
 def objection(candidate: Suspicion, proof: Proof, calibration: Calibration) -> str:
     """What speaks against suspecting an effect; empty where nothing does."""
-    one, look = candidate.evidence, candidate.look
-    name, size = one.hypothesis.name, candidate.fit.coordinates[0]
+    evidence, look = candidate.evidence, candidate.look
+    name, size = evidence.hypothesis.name, candidate.fit.coordinates[0]
     if candidate.gain <= SEEN**2:
         return "it is not seen"
     best, criteria = look.first.weights.best, look.criteria
@@ -410,7 +422,7 @@ def objection(candidate: Suspicion, proof: Proof, calibration: Calibration) -> s
     if candidate.at_bound:
         return "its best size is the largest one that is physical"
     beside = [] if candidate.companion is None else [candidate.companion]
-    if text := agreement_in(look, calibration).objection(one, beside, AGREEMENT):
+    if text := agreement_in(look, calibration).objection(evidence, beside, AGREEMENT):
         return text
     if candidate.gap is not None and not candidate.gap.closer and proof.seen(candidate.answer) > SEEN:
         return "it does not shrink the gap on the points held out"

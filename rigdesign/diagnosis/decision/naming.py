@@ -83,9 +83,9 @@ class Names:
 
     def entry(self, explanation: str) -> tuple[Effect | SensorError, int | None] | None:
         """Entry and tooth; None for what has no entry: unknown causes, exchanged channels, wrong units, pairs."""
-        found = self._effects.get(explanation) or self._errors.get(explanation)
-        if found is not None:
-            return found, None
+        entry = self._effects.get(explanation) or self._errors.get(explanation)
+        if entry is not None:
+            return entry, None
         name, _, tooth = explanation.rpartition("/")
         effect = self._effects.get(name)
         if effect is None or not effect.any_tooth or not tooth.isdigit():
@@ -94,8 +94,8 @@ class Names:
 
     def plain(self, explanation: str) -> str:
         """The explanation without its tooth: one name for all teeth of a gear."""
-        found = self.entry(explanation)
-        return explanation if found is None else found[0].name
+        entry_and_tooth = self.entry(explanation)
+        return explanation if entry_and_tooth is None else entry_and_tooth[0].name
 
     def title_of(self, evidence: Evidence) -> str:
         """Of an explanation at its best fit; of a pair both."""
@@ -103,11 +103,13 @@ class Names:
 
     def title(self, explanation: str, size: float = 0.0) -> str:
         """In words; of an effect at any order without the order; ``size``: of what has no entry, by its sign."""
-        found = self.entry(explanation)
-        if found is None:
-            of_orders = next((one.title for one in self._effects.values() if one.claim == explanation), "")
+        entry_and_tooth = self.entry(explanation)
+        if entry_and_tooth is None:
+            of_orders = next(
+                (effect.title for effect in self._effects.values() if effect.claim == explanation), ""
+            )
             return of_orders.rpartition(", ")[0] or _without_entry(explanation, size)
-        entry, tooth = found
+        entry, tooth = entry_and_tooth
         return entry.title if tooth is None else f"{entry.title}: tooth {tooth}"
 
     def sized(self, explanation: str, sizes: Sequence[float], ends: Sequence[Interval]) -> Sized:
@@ -115,10 +117,10 @@ class Names:
 
         Raises ValueError for an explanation without an entry.
         """
-        found = self.entry(explanation)
-        if found is None:
+        entry_and_tooth = self.entry(explanation)
+        if entry_and_tooth is None:
             raise ValueError(f"explanation {explanation} has no size; only entries of the catalogue have one")
-        entry, tooth = found
+        entry, tooth = entry_and_tooth
         parameters = _parameters(entry)
         values = tuple(_value(p, size) for p, size in zip(parameters, sizes, strict=True))
         limits = tuple(_ends(p, pair) for p, pair in zip(parameters, ends, strict=True))
@@ -140,17 +142,17 @@ def from_fit(names: Names, sizes: Sequence[Size]) -> tuple[Sized, ...]:
     for size in sizes:
         by_effect.setdefault(size.effect, []).append(size)
     return tuple(
-        names.sized(effect, [one.coordinate for one in own], [one.interval for one in own])
-        for effect, own in by_effect.items()
+        names.sized(effect, [size.coordinate for size in group], [size.interval for size in group])
+        for effect, group in by_effect.items()
     )
 
 
 def from_evidence(names: Names, evidence: Evidence, signature_error: Mapping[str, float]) -> Sized:
     """An explanation at its own best fit, as if it were the only one; the interval as that of a joint fit."""
-    found = names.entry(evidence.hypothesis.name)
-    if found is None:
+    entry_and_tooth = names.entry(evidence.hypothesis.name)
+    if entry_and_tooth is None:
         raise ValueError(f"explanation {evidence.hypothesis.name} has no size")
-    entry = found[0]
+    entry = entry_and_tooth[0]
     kind = entry.kind if isinstance(entry, Effect) else entry.name.split(":")[0]
     width = signature_error.get(kind.split("/")[0], signature_error.get("", 0.25))
     whole = hypot(*evidence.coordinates)
@@ -166,21 +168,21 @@ def from_evidence(names: Names, evidence: Evidence, signature_error: Mapping[str
 
 def size_value(names: Names, explanation: str, coordinate: float) -> float | None:
     """A size in the coordinate of an entry as the value of its parameter; None where there is none."""
-    found = names.entry(explanation)
-    if found is None or not isfinite(coordinate):
+    entry_and_tooth = names.entry(explanation)
+    if entry_and_tooth is None or not isfinite(coordinate):
         return None
     try:
-        return _value(_parameters(found[0])[0], coordinate)
+        return _value(_parameters(entry_and_tooth[0])[0], coordinate)
     except OverflowError:
         return None
 
 
 def parameter_of(names: Names, explanation: str) -> Parameter | None:
     """The parameter a detectable size belongs to; of a harmonic its amplitude."""
-    found = names.entry(explanation)
-    if found is None:
+    entry_and_tooth = names.entry(explanation)
+    if entry_and_tooth is None:
         return None
-    first = _parameters(found[0])[0]
+    first = _parameters(entry_and_tooth[0])[0]
     return Parameter(
         name=_amplitude_name(first.name), unit=first.unit, low=first.low, high=first.high,
         source=first.source, factor=first.factor,
@@ -285,8 +287,8 @@ def _without_entry(explanation: str, size: float) -> str:
     if angle := index_pulse_offset(explanation):
         return f"index pulse offset by {angle}"
     if kind == "unit":
-        channel, _, what = rest.partition(" (")
-        return f"{channel} in another unit or sign: {what.removesuffix(')')}"
+        channel, _, misread = rest.partition(" (")
+        return f"{channel} in another unit or sign: {misread.removesuffix(')')}"
     return explanation
 
 
@@ -310,7 +312,7 @@ def display_scale(unit: str, factor: bool) -> tuple[float, str]:
 def formatted(value: Value) -> str:
     """``run-out F_r 24.1 um (22.0 to 26.2)``."""
     scale, unit = display_scale(value.unit, value.factor)
-    numbers = [f"{scale * one:.3g}" for one in (value.value, *value.interval)]
+    numbers = [f"{scale * amount:.3g}" for amount in (value.value, *value.interval)]
     number = f"x {numbers[0]}" if value.factor else f"{numbers[0]} {unit}"
     bound = ", open at a bound" if value.open else ""
     return f"{value.name} {number} ({numbers[1]} to {numbers[2]}{bound})"
@@ -349,19 +351,19 @@ def in_words(cause: str, size: float = 0.0) -> str:
     size : fitted amount, by its sign heat or cooling; 0 where it is not known
     """
     more, less = size > 0.0, size < 0.0
-    if found := _HEAT.match(cause):
-        kind, place, where, law = found.groups()
+    if match := _HEAT.match(cause):
+        kind, place, where, law = match.groups()
         source = f"{'cooling' if less else 'heat'} from outside the drive"
         if kind == "heat":
             source = "less power loss than modelled" if less else "power loss"
         return f"{source} {PLACES.get(place, 'at {0}').format(where)}, {LAWS[law]}"
-    if found := _NEAR.match(cause):
+    if match := _NEAR.match(cause):
         source = "heat source" if more else "draught" if less else "heat source or draught"
-        return f"{source} near thermocouple {found[1]}, {LAWS[found[2]]}"
-    if found := _PIPE.match(cause):
-        return f"{'cooling' if less else 'heat'} in the {found[1]} line of {found[2]}"
-    if found := _ORDER.match(cause):
-        return f"order {found[1]} of {found[2]} without a known source, {LAWS[found[3]]}"
+        return f"{source} near thermocouple {match[1]}, {LAWS[match[2]]}"
+    if match := _PIPE.match(cause):
+        return f"{'cooling' if less else 'heat'} in the {match[1]} line of {match[2]}"
+    if match := _ORDER.match(cause):
+        return f"order {match[1]} of {match[2]} without a known source, {LAWS[match[3]]}"
     if cause.startswith("conductance "):
         compared = "better than" if more else "worse than" if less else "other than"
         return f"heat path {compared} modelled: {_path(cause.removeprefix('conductance '))}"
@@ -371,12 +373,12 @@ def in_words(cause: str, size: float = 0.0) -> str:
 def place_of(cause: str) -> str:
     """Where a cause is, whatever its law: heat whether the motor pays for it or not, an order of a channel."""
     bare = cause.removeprefix(UNKNOWN)
-    if found := _HEAT.match(bare):
-        return f"{UNKNOWN}heat at {found[2]}:{found[3]}"
-    if found := _NEAR.match(bare):
-        return f"{UNKNOWN}heat near {found[1]}"
-    if found := _ORDER.match(bare):
-        return f"{UNKNOWN}order {found[1]} of {found[2]}"
+    if match := _HEAT.match(bare):
+        return f"{UNKNOWN}heat at {match[2]}:{match[3]}"
+    if match := _NEAR.match(bare):
+        return f"{UNKNOWN}heat near {match[1]}"
+    if match := _ORDER.match(bare):
+        return f"{UNKNOWN}order {match[1]} of {match[2]}"
     return cause
 
 

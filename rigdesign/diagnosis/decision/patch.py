@@ -46,15 +46,15 @@ class Fitted:
         low, middle, high = (
             self._at(case, (value,)) for value in (self.ends[0][0], self.values[0], self.ends[0][1])
         )
-        found = {}
+        ranges = {}
         for path, value in middle.items():
             trio = (low.get(path), value, high.get(path))
-            if not all(isinstance(one, int | float) and not isinstance(one, bool) for one in trio):
+            if not all(isinstance(number, int | float) and not isinstance(number, bool) for number in trio):
                 continue
-            first, second = sorted(float(one) for one in (trio[0], trio[2]))  # type: ignore[arg-type]
+            first, second = sorted(float(number) for number in (trio[0], trio[2]))  # type: ignore[arg-type]
             if first <= float(value) <= second and first < second:  # type: ignore[arg-type]
-                found[path] = (first, second)
-        return found
+                ranges[path] = (first, second)
+        return ranges
 
     def _at(self, case: Case, values: tuple[float, ...]) -> Changes:
         return self.effect.change(case, values if self.tooth is None else (*values, float(self.tooth)))
@@ -70,10 +70,10 @@ def patched_values(case: Case, fitted: Sequence[Fitted]) -> dict[str, dict[str, 
     """
     values: dict[str, dict[str, Any]] = {}
     current = case
-    for one in fitted:
-        changes, ranges = one.changes(current), one.ranges(current)
+    for estimate in fitted:
+        changes, ranges = estimate.changes(current), estimate.ranges(current)
         for path, value in changes.items():
-            values[path] = {"value": written(current, path, value), "assumed": one.reason}
+            values[path] = {"value": written(current, path, value), "assumed": estimate.reason}
             if path in ranges:
                 values[path]["range"] = [written(current, path, end) for end in ranges[path]]
         current = changed_case(current, changes)
@@ -88,14 +88,14 @@ def patched_case(case: Case, fitted: Sequence[Fitted]) -> Case:
     CaseError
         The case does not admit a value.
     """
-    for one in fitted:
-        case = changed_case(case, one.changes(case))
+    for estimate in fitted:
+        case = changed_case(case, estimate.changes(case))
     return case
 
 
 def patched_title(case: Case, fitted: Sequence[Fitted]) -> str:
     """Title of the variant: that of the case with what was added."""
-    return f"{case.title}, with {' and '.join(one.effect.title for one in fitted)} as diagnosed"
+    return f"{case.title}, with {' and '.join(estimate.effect.title for estimate in fitted)} as diagnosed"
 
 
 def case_patch(case: Case, title: str, values: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:

@@ -158,20 +158,20 @@ class Leading:
         """Of a cause in no catalogue."""
         return in_words(self.name.removeprefix(UNKNOWN), self.size)
 
-    def ends(self, found: Diagnosis) -> bool:
+    def ends(self, diagnosis: Diagnosis) -> bool:
         """Whether a diagnosis ends in it: named, or located at its places."""
         if not self.unnamed:
-            return found.decision.verdict == "named" and self.name in found.named
-        return found.decision.verdict == "unknown_located" and mass_at(found, self.things) >= LOCATED
+            return diagnosis.decision.verdict == "named" and self.name in diagnosis.named
+        return diagnosis.decision.verdict == "unknown_located" and mass_at(diagnosis, self.things) >= LOCATED
 
 
-def mass_at(found: Diagnosis, things: Collection[str]) -> float:
+def mass_at(diagnosis: Diagnosis, things: Collection[str]) -> float:
     """Posterior mass of all explanations that stand for one of some things."""
-    evaluation = found.evaluations[0]
+    evaluation = diagnosis.evaluations[0]
     return sum(
-        evaluation.weights.masses[one.hypothesis.name]
-        for one in evaluation.evidence
-        if _stands_for(one.hypothesis) in things
+        evaluation.weights.masses[explanation.hypothesis.name]
+        for explanation in evaluation.evidence
+        if _stands_for(explanation.hypothesis) in things
     )
 
 
@@ -181,63 +181,70 @@ def _stands_for(hypothesis: Hypothesis) -> str:
     return place_of((*unnamed, *hypothesis.parts)[0])
 
 
-def leading(found: Diagnosis) -> list[Leading]:
+def leading(diagnosis: Diagnosis) -> list[Leading]:
     """The likeliest single explanations of different things, the members of a group first.
 
     Where nothing in the catalogue explains the data: causes in no catalogue as well, as many as hold `LOCATED` of the
     posterior mass together, at most `RIVALS`; all of these where a single effect holds it that the data contradict.
     """
-    if found.decision.verdict == "unknown_located":
-        credible = _credible(found, LOCATED)
-        return credible if len(credible) > 1 or credible_places(found) else _credible(found, inf)
-    masses, group = found.evaluations[0].weights.inclusion, found.decision.named
+    if diagnosis.decision.verdict == "unknown_located":
+        credible = _credible(diagnosis, LOCATED)
+        return credible if len(credible) > 1 or credible_places(diagnosis) else _credible(diagnosis, inf)
+    masses, group = diagnosis.evaluations[0].weights.inclusion, diagnosis.decision.named
     best = {
-        one.hypothesis.parts[0]: Leading(things=one.hypothesis.parts, evidence=one)
-        for one in reversed(_singles(found, NAMED))
+        explanation.hypothesis.parts[0]: Leading(things=explanation.hypothesis.parts, evidence=explanation)
+        for explanation in reversed(_singles(diagnosis, NAMED))
     }
     ordered = sorted(best.items(), key=lambda item: (item[0] not in group, -masses.get(item[0], 0.0)))
-    return [one for _, one in ordered][:RIVALS]
+    return [lead for _, lead in ordered][:RIVALS]
 
 
-def _singles(found: Diagnosis, families: Collection[str]) -> list[Evidence]:
+def _singles(diagnosis: Diagnosis, families: Collection[str]) -> list[Evidence]:
     return [
-        one
-        for one in found.evaluations[0].evidence
-        if one.hypothesis.family in families and len(one.hypothesis.parts) == 1
+        explanation
+        for explanation in diagnosis.evaluations[0].evidence
+        if explanation.hypothesis.family in families and len(explanation.hypothesis.parts) == 1
     ]
 
 
-def _credible(found: Diagnosis, least: float) -> list[Leading]:
+def _credible(diagnosis: Diagnosis, least: float) -> list[Leading]:
     """As many of the likeliest as hold a posterior mass together."""
-    weights = found.evaluations[0].weights
-    singles = sorted(_singles(found, NAMED | UNNAMED), key=lambda one: weights.masses[one.hypothesis.name])
-    best = {_stands_for(one.hypothesis): one for one in singles}
-    masses = {thing: mass_at(found, [thing]) for thing in best}
+    weights = diagnosis.evaluations[0].weights
+    singles = sorted(
+        _singles(diagnosis, NAMED | UNNAMED),
+        key=lambda explanation: weights.masses[explanation.hypothesis.name],
+    )
+    best = {_stands_for(explanation.hypothesis): explanation for explanation in singles}
+    masses = {cause: mass_at(diagnosis, [cause]) for cause in best}
     chosen: list[Leading] = []
-    held = 0.0
-    for thing in sorted(masses, key=lambda one: -masses[one])[:RIVALS]:
-        if held >= least:
+    mass = 0.0
+    for cause in sorted(masses, key=lambda cause: -masses[cause])[:RIVALS]:
+        if mass >= least:
             break
-        chosen.append(Leading(things=(thing,), evidence=best[thing], size=_size(found, thing)))
-        held += masses[thing]
+        chosen.append(Leading(things=(cause,), evidence=best[cause], size=_size(diagnosis, cause)))
+        mass += masses[cause]
     return chosen
 
 
-def _size(found: Diagnosis, thing: str) -> float:
+def _size(diagnosis: Diagnosis, cause: str) -> float:
     """Of what is at a place, in the most probable explanation that holds it."""
-    weights = found.evaluations[0].weights
-    holding = [one for one in found.evaluations[0].evidence if _stands_for(one.hypothesis) == thing]
-    most = max(holding, key=lambda one: weights.masses[one.hypothesis.name])
-    return next((sizes[0] for name, sizes in most.members if place_of(name) == thing and sizes), 0.0)
+    weights = diagnosis.evaluations[0].weights
+    holding = [
+        explanation
+        for explanation in diagnosis.evaluations[0].evidence
+        if _stands_for(explanation.hypothesis) == cause
+    ]
+    most = max(holding, key=lambda explanation: weights.masses[explanation.hypothesis.name])
+    return next((sizes[0] for name, sizes in most.members if place_of(name) == cause and sizes), 0.0)
 
 
-def credible_places(found: Diagnosis) -> list[Leading]:
+def credible_places(diagnosis: Diagnosis) -> list[Leading]:
     """The places of a cause in no catalogue, the likeliest first; none where they do not hold `LOCATED` together."""
-    if not found.decision.outside:
+    if not diagnosis.decision.outside:
         return []
-    places = _credible(found, LOCATED)
-    held = mass_at(found, [thing for one in places for thing in one.things])
-    return places if held >= LOCATED and all(one.unnamed for one in places) else []
+    places = _credible(diagnosis, LOCATED)
+    mass = mass_at(diagnosis, [cause for place in places for cause in place.things])
+    return places if mass >= LOCATED and all(place.unnamed for place in places) else []
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -249,7 +256,7 @@ class Compared:
 
 
 def compared(
-    whole: ResidualProblem, found: Diagnosis, explanations: Sequence[Leading], matrix: Array
+    whole: ResidualProblem, diagnosis: Diagnosis, explanations: Sequence[Leading], matrix: Array
 ) -> list[Compared]:
     """The explanations at their best fit, at the numbers measured and at those that could be.
 
@@ -257,46 +264,55 @@ def compared(
 
     whole : the numbers of the set followed by those that could be read; matrix : covariance of a healthy rig in them
     """
-    answers = _answers(whole, [one.evidence for one in explanations if not one.unnamed])
+    answers = _answers(
+        whole, [explanation.evidence for explanation in explanations if not explanation.unnamed]
+    )
     unnamed = {name: columns for _, name, columns in unmodelled_causes(whole.library, whole.channels)}
     factor = np.linalg.cholesky(matrix)
-    found_so_far: list[tuple[Compared, Array]] = []
-    for one in explanations:
+    traced: list[tuple[Compared, Array]] = []
+    for explanation in explanations:
         rival = (
-            _fitted(one.name, unnamed[one.name.removeprefix(UNKNOWN)], found)
-            if one.unnamed
-            else _rival(one.evidence, answers[one.evidence.hypothesis.name])
+            _fitted(explanation.name, unnamed[explanation.name.removeprefix(UNKNOWN)], diagnosis)
+            if explanation.unnamed
+            else _rival(explanation.evidence, answers[explanation.evidence.hypothesis.name])
         )
         trace = np.asarray(solve_triangular(factor, rival.answer, lower=True))
-        for place, (other, seen) in enumerate(found_so_far):
-            if one.unnamed and other.leading.unnamed and _cosine(trace, seen) >= ALIAS:
-                joined = replace(other.leading, things=(*other.leading.things, *one.things))
-                found_so_far[place] = replace(other, leading=joined), seen
+        for place, (other, seen) in enumerate(traced):
+            if explanation.unnamed and other.leading.unnamed and _cosine(trace, seen) >= ALIAS:
+                joined = replace(other.leading, things=(*other.leading.things, *explanation.things))
+                traced[place] = replace(other, leading=joined), seen
                 break
         else:
-            found_so_far.append((Compared(leading=one, rival=rival), trace))
-    return [one for one, _ in found_so_far]
+            traced.append((Compared(leading=explanation, rival=rival), trace))
+    return [fit for fit, _ in traced]
 
 
 def _answers(whole: ResidualProblem, rivals: Sequence[Evidence]) -> dict[str, Hypothesis]:
     """Of the rivals at all numbers, in the units of the features."""
-    names = {one.hypothesis.name for one in rivals}
-    effects = [one for one in whole.effects if any(f"{name}/".startswith(f"{one.name}/") for name in names)]
+    names = {rival.hypothesis.name for rival in rivals}
+    effects = [
+        effect for effect in whole.effects if any(f"{name}/".startswith(f"{effect.name}/") for name in names)
+    ]
     everything = (
         *physical(None, whole.features, effects, whole.library.responses, whole.teeth_a_turn, 0.0),
         *sensor(None, [error for error in whole.errors if error.name in names]),
     )
-    return {one.name: one for one in everything if one.name in names}
+    return {hypothesis.name: hypothesis for hypothesis in everything if hypothesis.name in names}
 
 
-def _rival(one: Evidence, hypothesis: Hypothesis) -> Rival:
-    sizes = np.array(one.coordinates)
+def _rival(explanation: Evidence, hypothesis: Hypothesis) -> Rival:
+    sizes = np.array(explanation.coordinates)
     if hypothesis.curve is not None:
         answer, slopes = hypothesis.curve.at(sizes)[0], hypothesis.curve.sensitivity(float(sizes[0]))[:, None]
     else:
         slopes = hypothesis.columns
         answer = slopes @ sizes
-    return Rival(name=one.hypothesis.name, answer=answer, slopes=slopes, deviations=np.array(one.deviations))
+    return Rival(
+        name=explanation.hypothesis.name,
+        answer=answer,
+        slopes=slopes,
+        deviations=np.array(explanation.deviations),
+    )
 
 
 def needed(whole: ResidualProblem, measured: int) -> list[Rival]:
@@ -304,11 +320,13 @@ def needed(whole: ResidualProblem, measured: int) -> list[Rival]:
 
     The first one of a kind stands for all of it, and for others that leave the same trace in all that could be read.
     """
-    causes = [one for one in required_causes(whole.rows(range(measured))) if _in_question(one)]
-    found: dict[str, Rival] = {}
-    for cause in sorted(causes, key=lambda one: (not one.within, one.size.reach if one.size else 0.0)):
+    causes = [required for required in required_causes(whole.rows(range(measured))) if _in_question(required)]
+    rivals: dict[str, Rival] = {}
+    for cause in sorted(
+        causes, key=lambda required: (not required.within, required.size.reach if required.size else 0.0)
+    ):
         assert cause.size is not None and isinstance(cause.entry, Effect)
-        if cause.entry.kind in found:
+        if cause.entry.kind in rivals:
             continue
         response = whole.library.responses[cause.entry.name]
         sizes = np.array(cause.size.coordinates)
@@ -316,9 +334,9 @@ def needed(whole: ResidualProblem, measured: int) -> list[Rival]:
             answer = straight(response.coordinates[:, 0], response.answers, float(sizes[0]))
         else:
             answer = response.sensitivity() @ sizes
-        if all(_cosine(answer, one.answer) < ALIAS for one in found.values()):
-            found[cause.entry.kind] = _at_one_size(cause.explanation, answer)
-    return list(found.values())[:RIVALS]
+        if all(_cosine(answer, rival.answer) < ALIAS for rival in rivals.values()):
+            rivals[cause.entry.kind] = _at_one_size(cause.explanation, answer)
+    return list(rivals.values())[:RIVALS]
 
 
 def _in_question(cause: RequiredCause) -> bool:
@@ -341,12 +359,12 @@ def _at_one_size(name: str, answer: Array) -> Rival:
     return Rival(name=name, answer=answer, slopes=np.zeros((len(answer), 0)), deviations=np.zeros(0))
 
 
-def _fitted(name: str, columns: Array, found: Diagnosis) -> Rival:
+def _fitted(name: str, columns: Array, diagnosis: Diagnosis) -> Rival:
     """A cause without a name, (n + m, k) columns, at the size that fits the residual (n,) best."""
-    measured = found.covariance.whiten(columns[: len(found.residual)])
+    measured = diagnosis.covariance.whiten(columns[: len(diagnosis.residual)])
     basis, upper = np.linalg.qr(measured)
     slopes = columns @ np.linalg.inv(upper)
-    sizes = basis.T @ found.covariance.whiten(found.residual)
+    sizes = basis.T @ diagnosis.covariance.whiten(diagnosis.residual)
     return Rival(name=name, answer=slopes @ sizes, slopes=slopes, deviations=np.ones(len(sizes)))
 
 
@@ -390,7 +408,7 @@ UNDECIDED = ("suspected", "alias_group", "too_small", "unknown_located", "data_i
 
 
 def next_measurements(
-    problem: Problem, found: Diagnosis, offered: Callable[[], Offer | None], calibration: Calibration
+    problem: Problem, diagnosis: Diagnosis, offered: Callable[[], Offer | None], calibration: Calibration
 ) -> NextMeasurements:
     """Measurements that tell the leading rivals apart; none where something is named.
 
@@ -401,11 +419,11 @@ def next_measurements(
 
     offered : makes the offer, where there is something to distinguish; None if there is none
     """
-    if found.decision.verdict not in UNDECIDED:
+    if diagnosis.decision.verdict not in UNDECIDED:
         return NOTHING_NEXT
-    explanations = leading(found)
-    insufficient = found.decision.verdict == "data_insufficient"
-    alone = insufficient or (found.decision.verdict == "suspected" and len(found.decision.named) == 1)
+    explanations = leading(diagnosis)
+    insufficient = diagnosis.decision.verdict == "data_insufficient"
+    alone = insufficient or (diagnosis.decision.verdict == "suspected" and len(diagnosis.decision.named) == 1)
     explanations = explanations[:1] if alone else explanations
     least = 1 if alone else 2
     if len(explanations) < least and not insufficient:
@@ -413,17 +431,17 @@ def next_measurements(
     offer = offered()
     if offer is None:
         return NOTHING_NEXT
-    whole, measured = _with_candidates(problem.residuals.rows(found.kept), offer.library)
+    whole, measured = _with_candidates(problem.residuals.rows(diagnosis.kept), offer.library)
     mean, matrix = problem.healthy(whole, calibration)
     causes = needed(whole, measured) if insufficient else []
     if len(causes) > 1:
         rivals, ends = causes, []
     else:
-        causes, ends = [], compared(whole, found, explanations, matrix)
+        causes, ends = [], compared(whole, diagnosis, explanations, matrix)
         if len(ends) < least:
             return NOTHING_NEXT
-        rivals = [*(one.rival for one in ends), *([nothing(whole)] if alone else [])]
-    foreseen = Foreseen.of(matrix, found.residual, rivals)
+        rivals = [*(end.rival for end in ends), *([nothing(whole)] if alone else [])]
+    foreseen = Foreseen.of(matrix, diagnosis.residual, rivals)
     offers = _offers(whole.features[measured:], whole.channels, offer)
     together = smallest_set(foreseen, offers)
     verified: tuple[tuple[str, bool], ...] = ()
@@ -431,12 +449,12 @@ def next_measurements(
         simulation = Simulation(
             problem=problem, whole=whole, measured=measured, mean=mean, foreseen=foreseen, rows=together.rows
         )
-        verified = simulation.verified([one.leading for one in ends], calibration)
+        verified = simulation.verified([end.leading for end in ends], calibration)
     return NextMeasurements(
         ranked=ranked(foreseen, offers),
         together=together,
         verified=verified,
-        causes=tuple(one.name for one in causes),
+        causes=tuple(cause.name for cause in causes),
     )
 
 
@@ -486,7 +504,7 @@ def _offers(features: Sequence[Feature], channels: Mapping[str, Channel], offer:
             by_channel.setdefault(feature.channel, []).append(row)
         else:
             by_point.setdefault(feature.setting, []).append(row)
-    found = [
+    sensors = [
         Proposal(
             title=f"a sensor: {name.removeprefix(SPARE)}",
             rows=tuple(rows),
@@ -495,7 +513,7 @@ def _offers(features: Sequence[Feature], channels: Mapping[str, Channel], offer:
         for name, rows in by_channel.items()
     ]
     points = {extra.setting.name: extra for extra in offer.extras}
-    return found + [
+    return sensors + [
         Proposal(title=points[name].title, rows=tuple(rows), cost=offer.costs.of(points[name].changed))
         for name, rows in by_point.items()
         if name in points
@@ -528,24 +546,27 @@ class Simulation:
     ) -> tuple[tuple[str, bool], ...]:
         """Explanation -> whether the diagnosis of its simulated readings names it, or locates what has no name."""
         return tuple(
-            (one.name, one.ends(diagnose(replace(self.problem, residuals=self._read(number)), calibration)))
-            for number, one in enumerate(explanations)
+            (
+                explanation.name,
+                explanation.ends(diagnose(replace(self.problem, residuals=self._read(number)), calibration)),
+            )
+            for number, explanation in enumerate(explanations)
         )
 
     def _read(self, number: int) -> ResidualProblem:
         """The set with the further readings as one rival foresees them, with their scatter."""
-        at = np.array(self.rows, dtype=np.intp)
-        scatter = np.linalg.cholesky(self.foreseen.left[np.ix_(at, at)])
-        drawn = scatter @ np.random.default_rng(SEED + number).normal(size=len(at))
-        places = [*range(self.measured), *(self.measured + at)]
+        rows = np.array(self.rows, dtype=np.intp)
+        scatter = np.linalg.cholesky(self.foreseen.left[np.ix_(rows, rows)])
+        drawn = scatter @ np.random.default_rng(SEED + number).normal(size=len(rows))
+        places = [*range(self.measured), *(self.measured + rows)]
         cut = self.whole.rows(places)
         new = (
-            (self.whole.library.base + self.mean)[self.measured + at]
-            + self.foreseen.values[number][at]
+            (self.whole.library.base + self.mean)[self.measured + rows]
+            + self.foreseen.values[number][rows]
             + drawn
         )
         points = {feature.setting for feature in cut.features}
-        run = tuple(one for one in cut.library.settings if one.name in points)
+        run = tuple(setting for setting in cut.library.settings if setting.name in points)
         inputs = {key: column for key, column in cut.library.inputs.items() if key[2] in points}
         return replace(
             cut,

@@ -68,7 +68,7 @@ class Explanations:
     def members(self) -> dict[str, int]:
         """Number of explanations by family; a pair joins any two."""
         known, unnamed = len(self.physical) + len(self.sensor), len(self.unmodelled)
-        local = sum(1 for one in self.unmodelled if one.family == "local")
+        local = sum(1 for hypothesis in self.unmodelled if hypothesis.family == "local")
         return {
             "physical": len(self.physical),
             "sensor": len(self.sensor),
@@ -139,24 +139,26 @@ def evaluate(
     table = detectabilities(space, known, explanations.unmodelled)
     contest = None if criteria.signature is None else Contest(space, criteria.signature)
     singles = _with_model_error(
-        contest, [evaluate_hypothesis(space, one) for one in (*known, *explanations.unmodelled)]
+        contest, [evaluate_hypothesis(space, hypothesis) for hypothesis in (*known, *explanations.unmodelled)]
     )
     singles = _without_copies(singles)
-    against = [criteria.contradicted(one) for one in singles]
-    contradicted = [one for one, spoken in zip(singles, against, strict=True) if spoken]
-    singles = [one for one, spoken in zip(singles, against, strict=True) if not spoken]
+    against = [criteria.contradicted(explanation) for explanation in singles]
+    contradicted = [explanation for explanation, spoken in zip(singles, against, strict=True) if spoken]
+    singles = [explanation for explanation, spoken in zip(singles, against, strict=True) if not spoken]
     pairs = [
-        one for one in _with_model_error(contest, _pairs(space, singles)) if not criteria.contradicted(one)
+        explanation
+        for explanation in _with_model_error(contest, _pairs(space, singles))
+        if not criteria.contradicted(explanation)
     ]
-    evidence = sorted((*singles, *pairs), key=lambda one: -one.log_bayes)
+    evidence = sorted((*singles, *pairs), key=lambda explanation: -explanation.log_bayes)
     weights = posterior(evidence, explanations.members, criteria.priors)
     candidates = Candidates(
-        effects=frozenset(part for one in known for part in one.parts),
+        effects=frozenset(part for hypothesis in known for part in hypothesis.parts),
         detectable={row.effect: row.detectable <= row.bound for row in table},
         orders=criteria.orders,
-        sensors=frozenset(part for one in explanations.sensor for part in one.parts),
+        sensors=frozenset(part for hypothesis in explanations.sensor for part in hypothesis.parts),
         circuit=criteria.circuit,
-        alike=_alike(singles, frozenset(part for one in known for part in one.parts)),
+        alike=_alike(singles, frozenset(part for hypothesis in known for part in hypothesis.parts)),
         one_oil=criteria.one_oil,
         passed_over=criteria.unnamed,
     )
@@ -191,9 +193,13 @@ class Earlier:
     def rivals(self, part: str) -> tuple[float, float]:
         """Posterior mass of what added anything at all to the names, and of that part of it that added ``part``."""
         masses = self.look.weights.masses
-        more = [one.hypothesis for one in self.look.evidence if self.named < frozenset(one.hypothesis.parts)]
-        return sum(masses[one.name] for one in more), sum(
-            masses[one.name] for one in more if part in one.parts
+        more = [
+            explanation.hypothesis
+            for explanation in self.look.evidence
+            if self.named < frozenset(explanation.hypothesis.parts)
+        ]
+        return sum(masses[hypothesis.name] for hypothesis in more), sum(
+            masses[hypothesis.name] for hypothesis in more if part in hypothesis.parts
         )
 
 
@@ -206,8 +212,8 @@ def _undivided(decision: Decision, earlier: Earlier | None, thresholds: Threshol
         return decision
     kept = []
     for part in decision.named:
-        whole, own = earlier.rivals(part)
-        if whole < 1.0 - thresholds.named or own >= thresholds.named * whole:
+        whole, mass = earlier.rivals(part)
+        if whole < 1.0 - thresholds.named or mass >= thresholds.named * whole:
             kept.append(part)
     if kept:
         return replace(decision, named=tuple(kept))
@@ -230,10 +236,10 @@ def _unsupported(
     if not criteria.points or decision.verdict not in ("named", "alias_group"):
         return {}
     thresholds = criteria.thresholds
-    ordered = sorted(evidence, key=lambda one: -weights.masses[one.hypothesis.name])
+    ordered = sorted(evidence, key=lambda explanation: -weights.masses[explanation.hypothesis.name])
     refused: dict[str, str] = {}
     for part in decision.named if decision.verdict == "named" else decision.named[:1]:
-        best = next(one for one in ordered if part in one.hypothesis.parts)
+        best = next(explanation for explanation in ordered if part in explanation.hypothesis.parts)
         least, where = support(space, criteria.points, best, part)
         whole = max(explained, best.gain)
         if least < thresholds.support:
@@ -251,10 +257,10 @@ def _unsupported(
 
 def _at_its_end(part: str, evidence: Sequence[Evidence]) -> bool:
     """Whether an effect of one size fits best where its range ends; zero, where an effect begins, is no end."""
-    for one in evidence:
-        if one.hypothesis.parts == (part,) and len(one.coordinates) == 1:
-            (size,) = one.coordinates
-            return any(end and abs(size - end) <= 1e-6 * abs(end) for (end,) in one.hypothesis.bounds)
+    for explanation in evidence:
+        if explanation.hypothesis.parts == (part,) and len(explanation.coordinates) == 1:
+            (size,) = explanation.coordinates
+            return any(end and abs(size - end) <= 1e-6 * abs(end) for (end,) in explanation.hypothesis.bounds)
     return False
 
 
@@ -286,29 +292,37 @@ def _without_copies(singles: Sequence[Evidence]) -> list[Evidence]:
 
     An error of a sensor has no claim to what is heat just as well: it keeps its unmodelled rivals.
     """
-    known = [one.answer for one in singles if one.hypothesis.family == "physical" and np.any(one.answer)]
+    known = [
+        explanation.answer
+        for explanation in singles
+        if explanation.hypothesis.family == "physical" and np.any(explanation.answer)
+    ]
     if not known:
         return list(singles)
     directions = np.array([answer / np.linalg.norm(answer) for answer in known])
 
-    def copied(one: Evidence) -> bool:
-        length = float(np.linalg.norm(one.answer))
-        return length > 0.0 and float((directions @ one.answer).max()) > COPY * length
+    def copied(explanation: Evidence) -> bool:
+        length = float(np.linalg.norm(explanation.answer))
+        return length > 0.0 and float((directions @ explanation.answer).max()) > COPY * length
 
-    return [one for one in singles if one.hypothesis.family not in UNNAMED or not copied(one)]
+    return [
+        explanation
+        for explanation in singles
+        if explanation.hypothesis.family not in UNNAMED or not copied(explanation)
+    ]
 
 
 def _alike(singles: Sequence[Evidence], effects: frozenset[str]) -> dict[str, frozenset[str]]:
     """Effect -> others whose answer at their best fit is its own one again: correlated, and not much smaller."""
     best: dict[str, Evidence] = {}
-    for one in sorted(singles, key=lambda single: -single.log_bayes):
-        part = one.hypothesis.parts[0]
-        if part in effects and np.any(one.answer):
-            best.setdefault(part, one)
+    for explanation in sorted(singles, key=lambda single: -single.log_bayes):
+        part = explanation.hypothesis.parts[0]
+        if part in effects and np.any(explanation.answer):
+            best.setdefault(part, explanation)
     if not best:
         return {}
     names = list(best)
-    answers = np.array([one.answer for one in best.values()])
+    answers = np.array([explanation.answer for explanation in best.values()])
     products = answers @ answers.T
     squares = np.diagonal(products)
     same = products > ALIAS * np.sqrt(np.outer(squares, squares))
@@ -321,9 +335,11 @@ def _alike(singles: Sequence[Evidence], effects: frozenset[str]) -> dict[str, fr
 
 def _pairs(space: Whitened, singles: Sequence[Evidence]) -> list[Evidence]:
     """The leading explanations joined with everything else, those without a name among them."""
-    ordered = sorted(singles, key=lambda one: -one.log_bayes)
-    unnamed = [one for one in ordered if one.hypothesis.family in UNNAMED]
-    leaders = [one for one in ordered if one.hypothesis.family not in UNNAMED][:LEADERS]
+    ordered = sorted(singles, key=lambda explanation: -explanation.log_bayes)
+    unnamed = [explanation for explanation in ordered if explanation.hypothesis.family in UNNAMED]
+    leaders = [explanation for explanation in ordered if explanation.hypothesis.family not in UNNAMED][
+        :LEADERS
+    ]
     leaders += unnamed[:UNNAMED_LEADERS]
     done: set[frozenset[str]] = set()
     pairs = []
@@ -343,14 +359,18 @@ PARTNERS = 24
 
 def _promising(space: Whitened, first: Evidence, singles: Sequence[Evidence]) -> list[Evidence]:
     """Those whose columns, less what the leader spans, hold most of what it leaves."""
-    others = [one for one in singles if one.hypothesis.name != first.hypothesis.name and one.columns.shape[1]]
+    others = [
+        explanation
+        for explanation in singles
+        if explanation.hypothesis.name != first.hypothesis.name and explanation.columns.shape[1]
+    ]
     left = space.residual - first.answer
-    columns = np.hstack([one.columns for one in others])
+    columns = np.hstack([explanation.columns for explanation in others])
     if first.columns.shape[1]:
-        own, _ = np.linalg.qr(first.columns)
-        columns = columns - own @ (own.T @ columns)
+        basis, _ = np.linalg.qr(first.columns)
+        columns = columns - basis @ (basis.T @ columns)
     explained = (columns.T @ left) ** 2 / np.maximum(np.einsum("nk,nk->k", columns, columns), 1e-300)
-    ends = np.cumsum([one.columns.shape[1] for one in others])
+    ends = np.cumsum([explanation.columns.shape[1] for explanation in others])
     shares = np.add.reduceat(explained, np.concatenate([[0], ends[:-1]]))
     return [others[place] for place in np.argsort(-shares, kind="stable")[:PARTNERS]]
 
@@ -380,35 +400,37 @@ class OtherDomain:
         """By the explanations of either domain; ``space``: of the other one."""
         return cls(
             space=space,
-            own={one.name: one for one in own.single},
-            there={one.name: one for one in there.single},
+            own={hypothesis.name: hypothesis for hypothesis in own.single},
+            there={hypothesis.name: hypothesis for hypothesis in there.single},
         )
 
     def seen_from(self, own: Explanations) -> "OtherDomain":
         """The same beside a space with some causes in the model, in which unmodelled ones have other lengths."""
-        return replace(self, own={one.name: one for one in own.single})
+        return replace(self, own={hypothesis.name: hypothesis for hypothesis in own.single})
 
-    def contradicts(self, one: Evidence) -> bool:
+    def contradicts(self, explanation: Evidence) -> bool:
         """Whether the residual there grows by more than what is seen, whatever the factor on the answer."""
-        answer, residual = self._answer(one), self.space.residual
+        answer, residual = self._answer(explanation), self.space.residual
         square = float(answer @ answer)
         if square <= SEEN**2:
             return False
-        exact = one.hypothesis.family in EXACT
+        exact = explanation.hypothesis.family in EXACT
         factor = 1.0 if exact else float(np.clip(answer @ residual / square, 1.0 / WIDE, WIDE))
         return factor**2 * square - 2.0 * factor * float(answer @ residual) > SEEN**2
 
-    def _answer(self, one: Evidence) -> Array:
+    def _answer(self, explanation: Evidence) -> Array:
         """(n,) what an explanation, or a pair of them, leaves in the other domain at its size."""
-        names = one.hypothesis.name.split(JOIN)
+        names = explanation.hypothesis.name.split(JOIN)
         sizes = (
-            np.split(np.array(one.coordinates), [one.joined]) if one.joined else [np.array(one.coordinates)]
+            np.split(np.array(explanation.coordinates), [explanation.joined])
+            if explanation.joined
+            else [np.array(explanation.coordinates)]
         )
-        found = np.zeros(len(self.space.residual))
+        answer = np.zeros(len(self.space.residual))
         for name, size in zip(names, sizes, strict=True):
             if name in self.there:
-                found += self.there[name].at(size * self.there[name].unit / self.own[name].unit)
-        return found
+                answer += self.there[name].at(size * self.there[name].unit / self.own[name].unit)
+        return answer
 
 
 MOST_EFFECTS = 4
@@ -460,22 +482,22 @@ def search(
         signature=signature,
     )
     evaluations = [evaluate(space, explanations, _beside(criteria, other, explanations))]
-    found: list[Evidence] = []
-    while evaluations[-1].decision.verdict == "named" and len(found) < MOST_EFFECTS:
+    named: list[Evidence] = []
+    while evaluations[-1].decision.verdict == "named" and len(named) < MOST_EFFECTS:
         new = _best_of(evaluations[-1])
         if not new:
             break
-        found += new
-        after = _with_named(space, found, signature)
-        claimed = {part for one in found for part in one.hypothesis.parts}
+        named += new
+        after = _with_named(space, named, signature)
+        claimed = {part for explanation in named for part in explanation.hypothesis.parts}
         rest = explanations_of(residuals, after)
         left = Explanations(
-            physical=[one for one in rest.physical if claimed.isdisjoint(one.parts)],
-            sensor=[one for one in rest.sensor if claimed.isdisjoint(one.parts)],
+            physical=[hypothesis for hypothesis in rest.physical if claimed.isdisjoint(hypothesis.parts)],
+            sensor=[hypothesis for hypothesis in rest.sensor if claimed.isdisjoint(hypothesis.parts)],
             unmodelled=rest.unmodelled,
         )
         earlier = Earlier(look=evaluations[0], named=frozenset(claimed))
-        explained = max(one.gain for one in found)
+        explained = max(explanation.gain for explanation in named)
         beside = _beside(criteria, other, rest)
         evaluations.append(evaluate(after, left, beside, explained=explained, earlier=earlier))
     return Look(
@@ -485,13 +507,17 @@ def search(
         explanations=explanations,
         criteria=criteria,
         evaluations=tuple(evaluations),
-        found=tuple(found),
+        found=tuple(named),
     )
 
 
-def _beside(criteria: Criteria, other: OtherDomain | None, own: Explanations) -> Criteria:
+def _beside(criteria: Criteria, other: OtherDomain | None, explanations: Explanations) -> Criteria:
     """The criteria with what the other domain says against explanations."""
-    return criteria if other is None else replace(criteria, contradicted=other.seen_from(own).contradicts)
+    return (
+        criteria
+        if other is None
+        else replace(criteria, contradicted=other.seen_from(explanations).contradicts)
+    )
 
 
 def causes_of_orders(residuals: ResidualProblem, explanations: Explanations, tier: Tier) -> frozenset[str]:
@@ -501,7 +527,10 @@ def causes_of_orders(residuals: ResidualProblem, explanations: Explanations, tie
         return frozenset(effects)
     others = (*explanations.sensor, *explanations.unmodelled)
     of_orders = {
-        part for one in others for part in one.parts if tier != "all" or part.startswith(ORDER_CAUSE)
+        part
+        for hypothesis in others
+        for part in hypothesis.parts
+        if tier != "all" or part.startswith(ORDER_CAUSE)
     }
     return frozenset(effects | of_orders)
 
@@ -509,12 +538,16 @@ def causes_of_orders(residuals: ResidualProblem, explanations: Explanations, tie
 def losses_of_oils(residuals: ResidualProblem, explanations: Explanations) -> dict[str, frozenset[str]]:
     """Unmodelled loss in an oil, whatever its law -> losses of the catalogue of which that oil takes most."""
     oils = {effect.heats for effect in residuals.effects if effect.heats}
-    found: dict[str, frozenset[str]] = {}
+    by_cause: dict[str, frozenset[str]] = {}
     for oil in oils:
         losses = frozenset(effect.claim for effect in residuals.effects if effect.heats == oil)
         start = f"{UNKNOWN}heat at oil:{oil} "
-        found |= {one.name: losses for one in explanations.unmodelled if one.name.startswith(start)}
-    return found
+        by_cause |= {
+            hypothesis.name: losses
+            for hypothesis in explanations.unmodelled
+            if hypothesis.name.startswith(start)
+        }
+    return by_cause
 
 
 def explanations_of(residuals: ResidualProblem, space: Whitened, *, rivals: bool = True) -> Explanations:
@@ -542,12 +575,12 @@ def signature_of(problem: Problem, residuals: ResidualProblem, calibration: Cali
     """
     placed = calibration.amplitudes.frequency * residuals.resonances.steepness
     share = np.hypot(placed, np.where(residuals.of_mesh, calibration.amplitudes.series_mesh_point, 0.0))
-    own = ModelError.of(residuals.features, share, residuals.of_mesh, residuals.values)
+    model_error = ModelError.of(residuals.features, share, residuals.of_mesh, residuals.values)
     return Signature.of(
         residuals.features,
         relative_speed(residuals.features, residuals.library.settings),
         calibration.signature_error,
-        None if problem.baseline is None else own,
+        None if problem.baseline is None else model_error,
         CloseModes.of(residuals.natural_frequencies, calibration.amplitudes.frequency),
         circuit=frozenset(effect.claim for effect in residuals.effects if effect.family.circuit),
     )
@@ -555,40 +588,48 @@ def signature_of(problem: Problem, residuals: ResidualProblem, calibration: Cali
 
 def _best_of(evaluation: Evaluation) -> list[Evidence]:
     """For every named effect its best explanation by itself."""
-    found = []
+    best = []
     for name in evaluation.decision.named:
-        own = [one for one in evaluation.evidence if one.hypothesis.parts == (name,)]
-        if own:
-            found.append(own[0])
-    return found
+        alone = [
+            explanation for explanation in evaluation.evidence if explanation.hypothesis.parts == (name,)
+        ]
+        if alone:
+            best.append(alone[0])
+    return best
 
 
-def _with_named(space: Whitened, found: Sequence[Evidence], signature: Signature) -> Whitened:
+def _with_named(space: Whitened, named: Sequence[Evidence], signature: Signature) -> Whitened:
     """The space with the named effects in the model, their sizes left free, and what it may answer wrongly to them."""
     lower = space.covariance.lower
     columns = [
         Column(
-            name=f"named {one.hypothesis.name}/{number}",
+            name=f"named {explanation.hypothesis.name}/{number}",
             kind="named",
             values=lower @ slope,
-            spread=one.hypothesis.widest,
+            spread=explanation.hypothesis.widest,
         )
-        for one in found
-        for number, slope in enumerate(one.columns.T)
+        for explanation in named
+        for number, slope in enumerate(explanation.columns.T)
     ]
     precision = np.diagonal(space.precision)
-    for one in found:
-        columns += signature.columns(one.hypothesis, lower @ one.answer, precision)
-    owns = [own for one in found for own in one.hypothesis.own]
-    residual = lower @ (space.freed(owns) - sum((one.answer for one in found), np.zeros(len(space.residual))))
+    for explanation in named:
+        columns += signature.columns(explanation.hypothesis, lower @ explanation.answer, precision)
+    effects = [name for explanation in named for name in explanation.hypothesis.own]
+    residual = lower @ (
+        space.freed(effects)
+        - sum((explanation.answer for explanation in named), np.zeros(len(space.residual)))
+    )
     nonlinear_parts = {
-        effect: lower @ part for effect, part in space.nonlinear_parts.items() if effect not in owns
+        effect: lower @ part for effect, part in space.nonlinear_parts.items() if effect not in effects
     }
     return Whitened.of(space.covariance.with_extra(columns), residual, nonlinear_parts)
 
 
-def fitted(space: Whitened, found: Sequence[Evidence], calibration: Calibration) -> JointFit:
+def fitted(space: Whitened, explanations: Sequence[Evidence], calibration: Calibration) -> JointFit:
     """The joint fit of some explanations in a space, with their intervals."""
     return fit_together(
-        space, found, calibration.signature_error, [one.hypothesis.intervals for one in found]
+        space,
+        explanations,
+        calibration.signature_error,
+        [explanation.hypothesis.intervals for explanation in explanations],
     )

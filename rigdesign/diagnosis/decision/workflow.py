@@ -176,14 +176,14 @@ def _wrong_data(
     )
     singles = (*everything.physical, *everything.sensor, *data)
     contest = Contest(whole, signature_of(problem, residuals, calibration))
-    evaluated = contest.evaluated([evaluate_hypothesis(whole, one) for one in singles])
-    evidence = sorted(evaluated, key=lambda one: -one.log_bayes)
+    evaluated = contest.evaluated([evaluate_hypothesis(whole, hypothesis) for hypothesis in singles])
+    evidence = sorted(evaluated, key=lambda explanation: -explanation.log_bayes)
     weights = posterior(evidence, {**everything.members, "input": len(data)})
     thresholds = calibration.thresholds(problem.baseline is not None)
     if weights.families.get("input", 0.0) <= thresholds.input:
         return None
-    wrong = [one for one in evidence if one.hypothesis.family == "input"]
-    best = max(wrong, key=lambda one: weights.masses[one.hypothesis.name])
+    wrong = [explanation for explanation in evidence if explanation.hypothesis.family == "input"]
+    best = max(wrong, key=lambda explanation: weights.masses[explanation.hypothesis.name])
     heat = np.flatnonzero(residuals.of_heat).tolist()
     of_heat = 0.5 * (
         _square(whole, whole.residual, heat) - _square(whole, whole.residual - best.answer, heat)
@@ -207,23 +207,23 @@ def _wrong_data(
 
 def _square(space: Whitened, white: Array, rows: list[int]) -> float:
     """Square of some numbers of a residual, whitened by themselves."""
-    own = space.covariance.matrix[np.ix_(rows, rows)]
+    block = space.covariance.matrix[np.ix_(rows, rows)]
     values = (space.covariance.lower @ white)[rows]
-    return float(values @ np.linalg.solve(own, values))
+    return float(values @ np.linalg.solve(block, values))
 
 
 def _alternatives(evaluation: Evaluation, count: int = 12) -> tuple[Alternative, ...]:
     masses: Mapping[str, float] = evaluation.weights.masses
-    ordered = sorted(evaluation.evidence, key=lambda one: -masses[one.hypothesis.name])
+    ordered = sorted(evaluation.evidence, key=lambda explanation: -masses[explanation.hypothesis.name])
     return tuple(
         Alternative(
-            name=one.hypothesis.name,
-            parts=one.hypothesis.parts,
-            posterior=masses[one.hypothesis.name],
-            gain=one.gain,
-            coordinates=one.coordinates,
+            name=explanation.hypothesis.name,
+            parts=explanation.hypothesis.parts,
+            posterior=masses[explanation.hypothesis.name],
+            gain=explanation.gain,
+            coordinates=explanation.coordinates,
         )
-        for one in ordered[:count]
+        for explanation in ordered[:count]
     )
 
 
@@ -262,7 +262,7 @@ class Finding:
     @property
     def evaluations(self) -> tuple[Evaluation, ...]:
         """Of all looks, one after the other."""
-        return tuple(one for look in self.looks for one in look.evaluations)
+        return tuple(evaluation for look in self.looks for evaluation in look.evaluations)
 
     @property
     def decision(self) -> Decision:
@@ -283,11 +283,11 @@ def found_in(numbers: Numbers, given: Decision | None = None) -> Finding:
     findings = [_of_domain(numbers, tiers) for tiers in numbers.domains]
     if len(findings) == 1:
         return findings[0]
-    sure = [one for one in findings if one.sure]
+    sure = [finding for finding in findings if finding.sure]
     if len(sure) == 2:
         return _together(numbers, *sure)
     if sure:
-        (other,) = (one for one in findings if one is not sure[0])
+        (other,) = (finding for finding in findings if finding is not sure[0])
         return _beside(sure[0], other)
     return max(findings, key=_severity)
 
@@ -331,9 +331,9 @@ def _of_domain(numbers: Numbers, tiers: Sequence[Tier]) -> Finding:
         if suspicion is None or numbers.contradiction(look, [suspicion.evidence], suspicion.fit):
             continue
         if suspicion.accounts_for_all:
-            held = numbers.claim(look, suspicion.as_named, [suspicion.evidence])
-            if held.decision.verdict in SURE:
-                return Finding(looks=(look,), claimed=_after(overruled, held))
+            confirmed = numbers.claim(look, suspicion.as_named, [suspicion.evidence])
+            if confirmed.decision.verdict in SURE:
+                return Finding(looks=(look,), claimed=_after(overruled, confirmed))
         return Finding(looks=(look,), claimed=_after(overruled, claimed), suspicion=suspicion)
     look, claimed = looks[-1]
     return Finding(looks=(look,), claimed=_after(overruled, claimed))
@@ -371,19 +371,22 @@ def _with_decision(finding: Finding, decision: Decision) -> Finding:
 
 def _together(numbers: Numbers, first: Finding, second: Finding) -> Finding:
     """Names of both domains; of two groups the smaller one, as a verdict has one, with the other one as well."""
-    grouped = [one for one in (first, second) if one.decision.verdict == "alias_group"]
+    grouped = [finding for finding in (first, second) if finding.decision.verdict == "alias_group"]
     leads, other = (second, first) if grouped == [second] else (first, second)
     if len(grouped) == 2:
-        leads, other = sorted(grouped, key=lambda one: len(one.decision.named))
+        leads, other = sorted(grouped, key=lambda finding: len(finding.decision.named))
         return _with_decision(leads, replace(leads.decision, as_well=other.decision.named))
     further = tuple(name for name in other.decision.named if name not in leads.decision.named)
     if not further:
         return leads
-    own, others = (numbers.fitted(one.look, one.claimed) for one in (leads, other))
-    known = {one.hypothesis.parts[0] for one in own.found}
-    others = others.only([one.hypothesis.parts[0] not in known for one in others.found])
-    found, fit = (*others.found, *own.found), others.fit.with_other(own.fit)
-    sizes = {one.hypothesis.name: size for one, size in zip(found, fit.coordinates, strict=True)}
+    leading, others = (numbers.fitted(finding.look, finding.claimed) for finding in (leads, other))
+    known = {explanation.hypothesis.parts[0] for explanation in leading.found}
+    others = others.only([explanation.hypothesis.parts[0] not in known for explanation in others.found])
+    explanations, fit = (*others.found, *leading.found), others.fit.with_other(leading.fit)
+    sizes = {
+        explanation.hypothesis.name: size
+        for explanation, size in zip(explanations, fit.coordinates, strict=True)
+    }
     proof = numbers.proof("all")
     reason = f"{leads.decision.reason}; {other.decision.reason}"
     try:
@@ -399,9 +402,9 @@ def _together(numbers: Numbers, first: Finding, second: Finding) -> Finding:
         looks=(*leads.looks, *other.looks),
         claimed=Claim(
             decision=decision,
-            found=found,
+            found=explanations,
             fit=fit,
-            fits={member: others.fit.with_other(one) for member, one in own.fits.items()},
+            fits={member: others.fit.with_other(of_member) for member, of_member in leading.fits.items()},
             answer=answer,
             gap=proof.gap(answer),
             refused=(*leads.claimed.refused, *other.claimed.refused),

@@ -69,13 +69,15 @@ def headline(outcome: Outcome) -> str:
     """The verdict in a sentence or two, and readings in doubt where nothing is named."""
     texts = [_verdict(outcome)]
     if outcome.verdict in NOTHING_NAMED:
-        doubtful = [one for one in outcome.result.data.findings if one.id in DOUBTFUL_READINGS]
-        texts += [f"Readings in doubt: {one.text}." for one in doubtful if one.weight == "suspect"]
+        doubtful = [finding for finding in outcome.result.data.findings if finding.id in DOUBTFUL_READINGS]
+        texts += [
+            f"Readings in doubt: {finding.text}." for finding in doubtful if finding.weight == "suspect"
+        ]
     return " ".join(texts)
 
 
 def _verdict(outcome: Outcome) -> str:
-    found = outcome.result.diagnosis
+    diagnosis = outcome.result.diagnosis
     match outcome.verdict:
         case "named":
             return " ".join([*_named(outcome), *_besides(outcome)])
@@ -87,7 +89,7 @@ def _verdict(outcome: Outcome) -> str:
         case "input_error_suspected":
             return f"A data error is more probable than a model error: {_titles(outcome)}."
         case "unknown_located":
-            reason = found.decision.reason
+            reason = diagnosis.decision.reason
             lead = "An effect is present; the data do not identify it"
             return f"{lead}: {reason}. {_located(outcome)}{_where(outcome)}".rstrip()
         case "within_noise":
@@ -97,16 +99,18 @@ def _verdict(outcome: Outcome) -> str:
         case "too_small":
             lead = "An effect may be present, too small to be distinguished from competing causes"
             return f"{lead}; most probable: {_titles(outcome)}."
-    return f"These data cannot identify an effect: {found.decision.reason}. {_foremost(outcome)}".rstrip()
+    return f"These data cannot identify an effect: {diagnosis.decision.reason}. {_foremost(outcome)}".rstrip()
 
 
 def _named(outcome: Outcome) -> list[str]:
     """What is named, of the case and of the measurement apart."""
     texts = []
     for lead, of_case in (("Missing in the model", True), ("Wrong in the measurement", False)):
-        own = [one for one in outcome.named if isinstance(one.entry, Effect) == of_case]
-        if own:
-            texts.append(f"{lead}: {'; '.join(f'{one.title}, {formatted(one.shown[0])}' for one in own)}.")
+        causes = [cause for cause in outcome.named if isinstance(cause.entry, Effect) == of_case]
+        if causes:
+            texts.append(
+                f"{lead}: {'; '.join(f'{cause.title}, {formatted(cause.shown[0])}' for cause in causes)}."
+            )
     return texts
 
 
@@ -125,10 +129,12 @@ def _besides(outcome: Outcome) -> list[str]:
 def _suspected(outcome: Outcome) -> str:
     """The suspected effect with its size, what speaks for it, and the gap with it."""
     assert outcome.suspected is not None
-    one = outcome.suspected
+    suspect = outcome.suspected
     gap = "" if outcome.gap is None else f" With it in the model the gap {gap_in_words(outcome.gap)}."
     reason = outcome.result.diagnosis.decision.reason
-    return f"Suspected: {one.title}, {formatted(one.shown[0])}. {reason[:1].upper()}{reason[1:]}.{gap}"
+    return (
+        f"Suspected: {suspect.title}, {formatted(suspect.shown[0])}. {reason[:1].upper()}{reason[1:]}.{gap}"
+    )
 
 
 def _located(outcome: Outcome) -> str:
@@ -139,10 +145,10 @@ def _located(outcome: Outcome) -> str:
 
 def _places(outcome: Outcome) -> str:
     """``power loss in a or power loss in b, growing with the speed``; empty where they are not known."""
-    found = [one.in_words.partition(", ") for one in credible_places(outcome.result.diagnosis)]
-    if len({law for _, _, law in found}) == 1:
-        return f"{' or '.join(cause for cause, _, _ in found)}, {found[0][2]}".rstrip(", ")
-    return " or ".join("".join(one) for one in found)
+    words = [place.in_words.partition(", ") for place in credible_places(outcome.result.diagnosis)]
+    if len({law for _, _, law in words}) == 1:
+        return f"{' or '.join(cause for cause, _, _ in words)}, {words[0][2]}".rstrip(", ")
+    return " or ".join("".join(parts) for parts in words)
 
 
 def _where(outcome: Outcome) -> str:
@@ -163,26 +169,26 @@ def _foremost(outcome: Outcome) -> str:
 
 def certainty(outcome: Outcome) -> str:
     """Why the verdict is proven or only indicative."""
-    found = outcome.result.diagnosis
-    if found.strength == "proven" and found.gap is not None:
+    diagnosis = outcome.result.diagnosis
+    if diagnosis.strength == "proven" and diagnosis.gap is not None:
         return (
             "Proven: the noise is known from repeats, and with the named effects in the model, run in full, the gap "
-            f"{gap_in_words(found.gap)}."
+            f"{gap_in_words(diagnosis.gap)}."
         )
     missing = []
     if outcome.verdict == "alias_group":
         missing.append("an alias group identifies no single effect")
     elif outcome.verdict == "suspected":
         missing.append("the effect is suspected, not named, and the case was not run with it in full")
-    elif not found.found:
+    elif not diagnosis.found:
         missing.append("no effect is named")
-    elif found.proof.rerun is None:
+    elif diagnosis.proof.rerun is None:
         missing.append("the case with the named effects was not run in full")
-    if found.unconfirmed:
-        missing.append(f"it could not be confirmed: {found.unconfirmed}")
+    if diagnosis.unconfirmed:
+        missing.append(f"it could not be confirmed: {diagnosis.unconfirmed}")
     if not outcome.result.problem.repeated:
         missing.append("most numbers have a single reading, so the declared noise is used")
-    if not found.held_out_points:
+    if not diagnosis.held_out_points:
         missing.append(f"no operating point was held out (that takes at least {LEAST_POINTS})")
     return f"Indicative: {', and '.join(missing)}."
 
@@ -192,11 +198,11 @@ def steps(outcome: Outcome) -> tuple[NextStep, ...]:
     together = () if outcome.ahead.together is None else outcome.ahead.together.titles
     computed = [
         NextStep(
-            text=one.title, why=_why(outcome, one), expected_evidence=one.expected_evidence, cost=one.cost,
-            decides=one.decides,
+            text=proposal.title, why=_why(outcome, proposal), expected_evidence=proposal.expected_evidence,
+            cost=proposal.cost, decides=proposal.decides,
         )
-        for one in outcome.ahead.ranked
-        if one.expected_evidence >= WORTH and (one.title,) != together
+        for proposal in outcome.ahead.ranked
+        if proposal.expected_evidence >= WORTH and (proposal.title,) != together
     ][:MOST_PROPOSED]  # fmt: skip
     nothing = [] if computed or together or not outcome.ahead.ranked else [_none_separates(outcome)]
     return (
@@ -220,16 +226,16 @@ def _none_separates(outcome: Outcome) -> NextStep:
 
 def _together(outcome: Outcome) -> list[NextStep]:
     """The cheapest measurements that decide, with what simulating them gave."""
-    found = outcome.ahead.together
-    if found is None:
+    together = outcome.ahead.together
+    if together is None:
         return []
     why = f"the cheapest set that {_decides(outcome)}"
     return [
         NextStep(
-            text=" and ".join(found.titles),
+            text=" and ".join(together.titles),
             why=why,
-            expected_evidence=found.expected_evidence,
-            cost=found.cost,
+            expected_evidence=together.expected_evidence,
+            cost=together.cost,
             decides=True,
         )
     ]
@@ -284,7 +290,9 @@ def _causes(outcome: Outcome) -> str:
 
 def _first(outcome: Outcome) -> list[NextStep]:
     """What follows from the verdict itself."""
-    corrections = [NextStep(text=one.text, why="then diagnose again") for one in outcome.corrections]
+    corrections = [
+        NextStep(text=correction.text, why="then diagnose again") for correction in outcome.corrections
+    ]
     match outcome.verdict:
         case "alias_group":
             if outcome.picked is None:
@@ -314,7 +322,7 @@ def _first(outcome: Outcome) -> list[NextStep]:
 
 
 def _better_data(outcome: Outcome) -> list[NextStep]:
-    result, found = outcome.result, outcome.result.diagnosis
+    result, diagnosis = outcome.result, outcome.result.diagnosis
     running = len(result.data.settings)
     steps = []
     if running < LEAST_RUNNING_POINTS:
@@ -324,7 +332,7 @@ def _better_data(outcome: Outcome) -> list[NextStep]:
                 why=f"{running} operating point{'s' if running != 1 else ''} cannot separate effects",
             )
         )
-    elif not found.held_out_points:
+    elif not diagnosis.held_out_points:
         steps.append(
             NextStep(
                 text=f"measure at least {LEAST_POINTS} operating points: corners of speed, torque and oil temperature",
@@ -346,4 +354,4 @@ def _better_data(outcome: Outcome) -> list[NextStep]:
 
 
 def _titles(outcome: Outcome) -> str:
-    return "; ".join(one.title for one in outcome.suspects)
+    return "; ".join(suspect.title for suspect in outcome.suspects)

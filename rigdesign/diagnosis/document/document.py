@@ -37,7 +37,7 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
     NonFiniteResultError
         If a number is not finite; what does not exist is None.
     """
-    result, found = outcome.result, outcome.result.diagnosis
+    result, diagnosis = outcome.result, outcome.result.diagnosis
     document = {
         "schema_version": SCHEMA,
         "tool_version": __version__,
@@ -45,20 +45,20 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
         "measurement": _measurement(result.measurement),
         "baseline": None if result.baseline is None else _measurement(result.baseline),
         "verdict": outcome.verdict,
-        "strength": found.strength,
+        "strength": diagnosis.strength,
         "headline": headline(outcome),
         "certainty": certainty(outcome),
-        "reason": found.decision.reason,
-        "named": [{**_sized(one), "posterior": _inclusion(outcome, one)} for one in outcome.named],
+        "reason": diagnosis.decision.reason,
+        "named": [{**_sized(sized), "posterior": _inclusion(outcome, sized)} for sized in outcome.named],
         "suspected": None if outcome.suspected is None else _sized(outcome.suspected),
         "suspects": [
             {
-                "effect": one.name,
-                "title": one.title,
-                "posterior": one.inclusion,
-                **(_NO_SIZE if one.size is None else _size_keys(one.size)),
+                "effect": suspect.name,
+                "title": suspect.title,
+                "posterior": suspect.inclusion,
+                **(_NO_SIZE if suspect.size is None else _size_keys(suspect.size)),
             }
-            for one in outcome.suspects
+            for suspect in outcome.suspects
         ],
         "refused": refused_rows(outcome),
         "suspected_inputs": suspected_inputs(outcome),
@@ -67,32 +67,32 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
         "detectability": detectability_rows(outcome),
         "aliases": _aliases(outcome),
         "gap": gap_document(outcome),
-        "located": [_located(one, result.measurement) for one in outcome.before],
+        "located": [_located(group, result.measurement) for group in outcome.before],
         "gauge_modes": gauge_mode_rows(outcome),
         "unexplained": _unexplained(outcome),
         "costs_stated": bool(result.measurement.costs),
         "next_measurements": [
             {
-                "measurement": one.text,
-                "why": one.why,
-                "expected_evidence": one.expected_evidence,
-                "expected_odds": one.odds,
-                "cost": one.cost,
-                "decides": one.decides,
+                "measurement": step.text,
+                "why": step.why,
+                "expected_evidence": step.expected_evidence,
+                "expected_odds": step.odds,
+                "cost": step.cost,
+                "decides": step.decides,
             }
-            for one in steps(outcome)
+            for step in steps(outcome)
         ],
         "required_sizes": required_document(outcome),
         "data": {
             "findings": result.data.findings,
             "rejected_readings": _rejected(outcome),
-            "numbers": len(found.kept),
+            "numbers": len(diagnosis.kept),
             "points": [
                 {
                     "point": setting.name,
                     "speed_rpm": units.display(setting.speed, "speed"),
                     "torque_Nm": setting.torque,
-                    "held_out": setting.name in found.held_out_points,
+                    "held_out": setting.name in diagnosis.held_out_points,
                 }
                 for setting in result.data.settings
             ],
@@ -109,9 +109,14 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
 def suspected_inputs(outcome: Outcome) -> list[dict[str, Any]]:
     """What may be wrong with the data: stated doubts, and what the data checks found."""
     return [
-        {"id": one.id, "text": one.text, "channels": list(one.channels), "points": list(one.points)}
-        for one in outcome.result.data.findings
-        if one.weight == "suspect"
+        {
+            "id": finding.id,
+            "text": finding.text,
+            "channels": list(finding.channels),
+            "points": list(finding.points),
+        }
+        for finding in outcome.result.data.findings
+        if finding.weight == "suspect"
     ]
 
 
@@ -133,14 +138,14 @@ def _calibration(calibration: Calibration) -> dict[str, Any]:
     return document
 
 
-def _inclusion(outcome: Outcome, one: Sized) -> float:
+def _inclusion(outcome: Outcome, sized: Sized) -> float:
     """Posterior mass of all explanations that hold the effect, in the look at the data that named it."""
-    masses = [look.weights.inclusion.get(one.name, 0.0) for look in outcome.result.diagnosis.evaluations]
+    masses = [look.weights.inclusion.get(sized.name, 0.0) for look in outcome.result.diagnosis.evaluations]
     return max(masses)
 
 
-def _sized(one: Sized) -> dict[str, Any]:
-    return {"effect": one.name, "title": one.title, **_size_keys(one)}
+def _sized(sized: Sized) -> dict[str, Any]:
+    return {"effect": sized.name, "title": sized.title, **_size_keys(sized)}
 
 
 _NO_SIZE: Mapping[str, Any] = {
@@ -148,15 +153,15 @@ _NO_SIZE: Mapping[str, Any] = {
 }  # fmt: skip
 
 
-def _size_keys(one: Sized) -> dict[str, Any]:
+def _size_keys(sized: Sized) -> dict[str, Any]:
     """Entry, tooth, and parameters as the contract has them."""
-    effect = isinstance(one.entry, Effect)
+    effect = isinstance(sized.entry, Effect)
     return {
-        "explanation": one.explanation,
+        "explanation": sized.explanation,
         "belongs_to": "case" if effect else "measurement",
-        "tooth": one.tooth,
-        "signature": one.entry.signature if isinstance(one.entry, Effect) else None,
-        "parameters": [_value(value) for value in one.shown],
+        "tooth": sized.tooth,
+        "signature": sized.entry.signature if isinstance(sized.entry, Effect) else None,
+        "parameters": [_value(value) for value in sized.shown],
     }
 
 
@@ -173,26 +178,26 @@ def _value(value: Value) -> dict[str, Any]:
 
 def _alternatives(outcome: Outcome) -> list[dict[str, Any]]:
     """Hypotheses with their posterior mass, none among them."""
-    found = outcome.result.diagnosis
-    evidence = {one.hypothesis.name: one for one in found.deciding.evidence}
+    diagnosis = outcome.result.diagnosis
+    evidence = {explanation.hypothesis.name: explanation for explanation in diagnosis.deciding.evidence}
     rows: list[dict[str, Any]] = [
         {"explanation": "none", "title": "nothing but the residual of a healthy rig", "family": "none", "effects": [],
-         "posterior": found.deciding.weights.masses["none"], "gain": 0.0, "parameters": []}
+         "posterior": diagnosis.deciding.weights.masses["none"], "gain": 0.0, "parameters": []}
     ]  # fmt: skip
-    for one in found.alternatives:
-        own = evidence[one.name]
-        sized = outcome.names.entry(one.name) is not None
+    for alternative in diagnosis.alternatives:
+        best = evidence[alternative.name]
+        sized = outcome.names.entry(alternative.name) is not None
         size = (
-            from_evidence(outcome.names, own, outcome.result.calibration.signature_error) if sized else None
+            from_evidence(outcome.names, best, outcome.result.calibration.signature_error) if sized else None
         )
         rows.append(
             {
-                "explanation": one.name,
-                "title": outcome.names.title_of(own),
-                "family": own.hypothesis.family,
-                "effects": list(one.parts),
-                "posterior": one.posterior,
-                "gain": one.gain,
+                "explanation": alternative.name,
+                "title": outcome.names.title_of(best),
+                "family": best.hypothesis.family,
+                "effects": list(alternative.parts),
+                "posterior": alternative.posterior,
+                "gain": alternative.gain,
                 "parameters": [] if size is None else [_value(value) for value in size.shown],
             }
         )
@@ -209,7 +214,7 @@ def detectability_rows(outcome: Outcome) -> list[dict[str, Any]]:
     for row in outcome.result.diagnosis.detectability:
         effect = names.plain(row.effect)
         kept, count = worst.get(effect, (row, 0))
-        worst[effect] = (max(kept, row, key=lambda one: one.isolable), count + 1)
+        worst[effect] = (max(kept, row, key=lambda detectability: detectability.isolable), count + 1)
     rows = [
         _detectability(names, effect, row, count)
         for effect, (row, count) in sorted(
@@ -263,7 +268,11 @@ def _aliases(outcome: Outcome) -> list[dict[str, Any]]:
         if key[0] != key[1]:
             strongest[key] = max(strongest.get(key, 0.0), correlation)
     return [
-        {"effects": list(pair), "titles": [names.title(one) for one in pair], "correlation": correlation}
+        {
+            "effects": list(pair),
+            "titles": [names.title(effect) for effect in pair],
+            "correlation": correlation,
+        }
         for pair, correlation in sorted(strongest.items(), key=lambda item: (-item[1], item[0]))
     ]
 
@@ -282,12 +291,14 @@ def _located(item: Located, measurement: MeasurementSet) -> dict[str, Any]:
 
 def _unexplained(outcome: Outcome) -> dict[str, Any]:
     """What is left once the named effects are in the model."""
-    found = outcome.result.diagnosis
-    last = found.evaluations[-1]
+    diagnosis = outcome.result.diagnosis
+    last = diagnosis.evaluations[-1]
     return {
         "verdict": last.decision.verdict,
         "reason": last.decision.reason,
-        "groups": [_located(one, outcome.result.measurement) for one in outcome.after if significant(one)],
+        "groups": [
+            _located(group, outcome.result.measurement) for group in outcome.after if significant(group)
+        ],
     }
 
 
@@ -335,14 +346,18 @@ def measurement_patch(outcome: Outcome) -> dict[str, Any]:
                 "path": str(measurement.folder),
                 "hash": measurement.hash,
             },
-            "operations": [operation for one in outcome.corrections for operation in one.operations],
+            "operations": [
+                operation for correction in outcome.corrections for operation in correction.operations
+            ],
             "corrections": [
                 {
-                    "effect": one.name,
-                    "text": one.text,
-                    "parameters": [] if one.size is None else [_value(value) for value in one.size.shown],
+                    "effect": correction.name,
+                    "text": correction.text,
+                    "parameters": []
+                    if correction.size is None
+                    else [_value(value) for value in correction.size.shown],
                 }
-                for one in outcome.corrections
+                for correction in outcome.corrections
             ],
         }
     )
@@ -357,9 +372,9 @@ def sentences(items: Sequence[Located], measurement: MeasurementSet) -> list[str
 
 def leading_sentences(outcome: Outcome) -> list[str]:
     """Groups that the named effects move most, or that hold most of the residual; where none betrays itself."""
-    found = outcome.result.diagnosis
-    values = outcome.answer if outcome.in_model else found.residual
-    shares = (values / np.sqrt(np.diagonal(found.covariance.matrix))) ** 2
+    diagnosis = outcome.result.diagnosis
+    values = outcome.answer if outcome.in_model else diagnosis.residual
+    shares = (values / np.sqrt(np.diagonal(diagnosis.covariance.matrix))) ** 2
     whole = float(shares.sum())
     weights = [(float(shares[list(item.features)].sum()), item) for item in outcome.before]
     ordered = sorted(weights, key=lambda pair: -pair[0])
@@ -382,22 +397,22 @@ def gauge_mode_rows(outcome: Outcome) -> list[dict[str, Any]]:
     ``residual_um_per_m`` is the root mean square over the gauges of that mode, positive for tilt where the gauges to
     the rear read more than simulated; ``deviations`` is it over its standard deviation in a healthy rig.
     """
-    found = outcome.result.diagnosis
+    diagnosis = outcome.result.diagnosis
     residuals = outcome.result.problem.residuals
-    features = [residuals.features[row] for row in found.kept]
-    matrix = found.covariance.matrix
+    features = [residuals.features[row] for row in diagnosis.kept]
+    matrix = diagnosis.covariance.matrix
     rows = []
-    for one in gauge_rows(features, residuals.channels):
-        at = np.array(one.rows, dtype=np.intp)
-        if len(at) < LEAST_GAUGES:
+    for gauge_row in gauge_rows(features, residuals.channels):
+        gauges = np.array(gauge_row.rows, dtype=np.intp)
+        if len(gauges) < LEAST_GAUGES:
             continue
-        for mode, shape in one.shapes.items():
-            size = float(shape @ found.residual[at])
-            spread = float(np.sqrt(shape @ matrix[np.ix_(at, at)] @ shape))
+        for mode, shape in gauge_row.shapes.items():
+            size = float(shape @ diagnosis.residual[gauges])
+            spread = float(np.sqrt(shape @ matrix[np.ix_(gauges, gauges)] @ shape))
             rows.append(
                 {
-                    "gear": one.gear, "window": one.window, "point": one.point, "mode": mode,
-                    "residual_um_per_m": 1e6 * size / float(np.sqrt(len(at))), "deviations": size / spread,
+                    "gear": gauge_row.gear, "window": gauge_row.window, "point": gauge_row.point, "mode": mode,
+                    "residual_um_per_m": 1e6 * size / float(np.sqrt(len(gauges))), "deviations": size / spread,
                 }
             )  # fmt: skip
     return rows
@@ -433,13 +448,13 @@ def refused_rows(outcome: Outcome) -> list[dict[str, Any]]:
     """Names that the search gave and that are not claimed, with the gap that speaks against them."""
     return [
         {
-            "effect": one.name,
-            "title": outcome.names.title(one.explanation),
-            "explanation": one.explanation,
-            "reason": one.reason,
-            "gap": None if one.gap is None else _gap_numbers(one.gap),
+            "effect": refusal.name,
+            "title": outcome.names.title(refusal.explanation),
+            "explanation": refusal.explanation,
+            "reason": refusal.reason,
+            "gap": None if refusal.gap is None else _gap_numbers(refusal.gap),
         }
-        for one in outcome.result.diagnosis.refused
+        for refusal in outcome.result.diagnosis.refused
     ]
 
 
@@ -448,25 +463,27 @@ def gap_rows(outcome: Outcome) -> list[dict[str, Any]]:
 
     Those that the named effects move most come first; ``moved`` is the change they make.
     """
-    result, found = outcome.result, outcome.result.diagnosis
+    result, diagnosis = outcome.result, outcome.result.diagnosis
     features = kept_features(outcome)
-    noise = result.problem.residuals.noise[list(found.kept)]
-    spread = np.sqrt(np.diagonal(found.covariance.matrix))
+    noise = result.problem.residuals.noise[list(diagnosis.kept)]
+    spread = np.sqrt(np.diagonal(diagnosis.covariance.matrix))
     rows = []
     for name, entry in result.data.channels.items():
-        own = np.array(
-            [f.channel == name and f.setting in found.held_out_points for f in features], dtype=np.bool_
+        held_out = np.array(
+            [f.channel == name and f.setting in diagnosis.held_out_points for f in features], dtype=np.bool_
         )
-        if not own.any():
+        if not held_out.any():
             continue
-        numbers = (found.residual, found.residual - outcome.answer, outcome.answer, noise)
-        shown = [display_residual(_rms(one[own]), entry.channel.quantity, entry.unit) for one in numbers]
+        numbers = (diagnosis.residual, diagnosis.residual - outcome.answer, outcome.answer, noise)
+        shown = [
+            display_residual(_rms(values[held_out]), entry.channel.quantity, entry.unit) for values in numbers
+        ]
         before, after, moved, floor = (value for value, _ in shown)
         rows.append(
             {
                 "channel": name, "quantity": entry.channel.quantity, "unit": shown[0][1], "before": before,
                 "after": after, "moved": moved, "noise": floor,
-                "moved_over_spread": _rms(outcome.answer[own] / spread[own]), "numbers": int(own.sum()),
+                "moved_over_spread": _rms(outcome.answer[held_out] / spread[held_out]), "numbers": int(held_out.sum()),
             }
         )  # fmt: skip
     return sorted(rows, key=lambda row: -row["moved_over_spread"])

@@ -107,10 +107,10 @@ def of_data(name: str, measurement: MeasurementSet) -> Correction:
         )
     if angle := index_pulse_offset(name):
         return Correction(name=name, text=_turned(angle))
-    channel, _, found = rest.partition(" (")
-    found = found.removesuffix(")")
+    channel, _, misread = rest.partition(" (")
+    misread = misread.removesuffix(")")
     entry = measurement.channels.get(channel)
-    unit = None if entry is None else MISREAD_UNITS.get((entry.unit, found))
+    unit = None if entry is None else MISREAD_UNITS.get((entry.unit, misread))
     if unit is not None:
         return Correction(
             name=name,
@@ -119,7 +119,7 @@ def of_data(name: str, measurement: MeasurementSet) -> Correction:
         )
     return Correction(
         name=name,
-        text=f"the readings of {channel} look as if of another unit or sign ({found}); convert its column",
+        text=f"the readings of {channel} look as if of another unit or sign ({misread}); convert its column",
     )
 
 
@@ -129,21 +129,21 @@ def _turned(angle: str) -> str:
 
 def _placed(channel: MeasuredChannel, other: MeasuredChannel) -> list[dict[str, Any]]:
     """Put a channel where another one is."""
-    at = f"/channels/{_token(channel.name)}"
-    operations: list[dict[str, Any]] = [{"op": "add", "path": f"{at}/place", "value": other.channel.place}]
+    path = f"/channels/{_token(channel.name)}"
+    operations: list[dict[str, Any]] = [{"op": "add", "path": f"{path}/place", "value": other.channel.place}]
     if other.channel.at is not None:
         place = [f"{value:.10g} m" for value in other.channel.at]
-        operations.append({"op": "add", "path": f"{at}/at", "value": place})
+        operations.append({"op": "add", "path": f"{path}/at", "value": place})
     elif channel.channel.at is not None:
-        operations.append({"op": "remove", "path": f"{at}/at"})
+        operations.append({"op": "remove", "path": f"{path}/at"})
     if other.channel.direction is not None:
         spelled = direction_text(other.channel.direction)
-        operations.append({"op": "add", "path": f"{at}/direction", "value": spelled})
+        operations.append({"op": "add", "path": f"{path}/direction", "value": spelled})
     if other.channel.position is not None:
         position = f"{other.channel.position:.10g} m"
-        operations.append({"op": "add", "path": f"{at}/position", "value": position})
+        operations.append({"op": "add", "path": f"{path}/position", "value": position})
     elif channel.channel.position is not None:
-        operations.append({"op": "remove", "path": f"{at}/position"})
+        operations.append({"op": "remove", "path": f"{path}/position"})
     return operations
 
 
@@ -217,7 +217,7 @@ class Outcome:
         """What is drawn beside the readings: effects in the model, or the leading suspect alone, and what it adds."""
         if self.in_model:
             return " and ".join(self.in_model), self.answer
-        sized = [one.size for one in self.suspects if one.size is not None]
+        sized = [suspect.size for suspect in self.suspects if suspect.size is not None]
         if not sized or self.verdict in ("within_noise", "input_error_suspected"):
             return "", self.answer
         first = sized[0]
@@ -234,14 +234,14 @@ class Outcome:
         if self.picked is None and self.suspected is not None:
             return (self.suspected.explanation,)
         if self.picked is None:
-            return tuple(one.hypothesis.name for one in self.result.diagnosis.found)
-        return tuple(one.explanation for one in self.applied)
+            return tuple(explanation.hypothesis.name for explanation in self.result.diagnosis.found)
+        return tuple(sized.explanation for sized in self.applied)
 
 
 def _applied(verdict: str, named: tuple[Sized, ...], picked: Sized | None) -> tuple[Sized, ...]:
     if picked is None:
         return named
-    others = tuple(one for one in named if one.name != picked.name) if verdict == "alias_group" else ()
+    others = tuple(sized for sized in named if sized.name != picked.name) if verdict == "alias_group" else ()
     return (*others, picked)
 
 
@@ -255,18 +255,20 @@ def outcome(result: Result, *, pick: str | None = None) -> Outcome:
     UsageError
         An effect picked that these data do not evaluate, or that is not among the named ones.
     """
-    found = result.diagnosis
+    diagnosis = result.diagnosis
     names = Names(result.effects, result.problem.residuals.errors)
-    fit = found.fit if pick is None else found.fits.get(pick, found.fit)
+    fit = diagnosis.fit if pick is None else diagnosis.fits.get(pick, diagnosis.fit)
     fitted = () if fit is None else from_fit(names, fit.sizes)
-    group = found.decision.verdict == "alias_group"
-    named = tuple(one for one in fitted if not group or one.name in found.decision.apart)
+    group = diagnosis.decision.verdict == "alias_group"
+    named = tuple(sized for sized in fitted if not group or sized.name in diagnosis.decision.apart)
     picked = None if pick is None else _picked(result, names, fitted, pick)
-    applied = _applied(found.decision.verdict, named, picked)
-    suspicion = found.suspicion
+    applied = _applied(diagnosis.decision.verdict, named, picked)
+    suspicion = diagnosis.suspicion
     suspected = None if suspicion is None else from_fit(names, suspicion.fit.sizes)[0]
-    answer, gap = (found.answer, found.gap) if suspicion is None else (suspicion.answer, suspicion.gap)
-    full_run = suspicion is None and found.proof.rerun is not None and not found.unconfirmed
+    answer, gap = (
+        (diagnosis.answer, diagnosis.gap) if suspicion is None else (suspicion.answer, suspicion.gap)
+    )
+    full_run = suspicion is None and diagnosis.proof.rerun is not None and not diagnosis.unconfirmed
     offered = None
     if suspected is not None and picked is None:
         offered, _ = _case_patch(result, [suspected], None)
@@ -274,15 +276,15 @@ def outcome(result: Result, *, pick: str | None = None) -> Outcome:
         patch, refused = None, _why_not(result, False)
     else:
         patch, refused = _case_patch(result, applied, picked)
-    if patch is not None and found.unconfirmed:
-        patch, refused = None, found.unconfirmed
+    if patch is not None and diagnosis.unconfirmed:
+        patch, refused = None, diagnosis.unconfirmed
     if picked is not None:
         answer, gap, full_run, failure = _put_to_the_proof(result, applied)
         if patch is not None and failure:
             patch, refused = None, failure
-    corrections = [of_sensor(one) for one in applied if not isinstance(one.entry, Effect)]
-    if found.decision.verdict == "input_error_suspected":
-        corrections += [of_data(name, result.measurement) for name in found.decision.named]
+    corrections = [of_sensor(sized) for sized in applied if not isinstance(sized.entry, Effect)]
+    if diagnosis.decision.verdict == "input_error_suspected":
+        corrections += [of_data(name, result.measurement) for name in diagnosis.decision.named]
     return Outcome(
         result=result,
         names=names,
@@ -297,8 +299,8 @@ def outcome(result: Result, *, pick: str | None = None) -> Outcome:
         gap=gap,
         full_run=full_run,
         corrections=tuple(corrections),
-        before=located(result, found.residual),
-        after=located(result, found.residual - answer),
+        before=located(result, diagnosis.residual),
+        after=located(result, diagnosis.residual - answer),
         ahead=result.next_measurements,
     )
 
@@ -330,28 +332,31 @@ def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
 
     An explanation that holds several members of a group counts in equal parts for each.
     """
-    found = result.diagnosis
-    weights, evidence = found.deciding.weights, found.deciding.evidence
-    wanted: list[tuple[str, ...]] = [(name,) for name in found.decision.named]
-    held = dict.fromkeys(wanted, 0.0)
+    diagnosis = result.diagnosis
+    weights, evidence = diagnosis.deciding.weights, diagnosis.deciding.evidence
+    wanted: list[tuple[str, ...]] = [(name,) for name in diagnosis.decision.named]
+    masses = dict.fromkeys(wanted, 0.0)
     if wanted:
-        for one in evidence:
-            own = [part for part in wanted if part[0] in one.hypothesis.parts]
-            held |= {part: held[part] + weights.masses[one.hypothesis.name] / len(own) for part in own}
+        for explanation in evidence:
+            members = [part for part in wanted if part[0] in explanation.hypothesis.parts]
+            masses |= {
+                part: masses[part] + weights.masses[explanation.hypothesis.name] / len(members)
+                for part in members
+            }
     else:
-        few = found.decision.verdict == "data_insufficient"
-        for one in evidence:
-            parts = tuple(sorted(one.hypothesis.parts))
-            if not few or one.hypothesis.family not in ("pair", "input"):
-                held[parts] = held.get(parts, 0.0) + weights.masses[one.hypothesis.name]
-        wanted = sorted(held, key=lambda parts: -held[parts])[:SHOWN]
+        few = diagnosis.decision.verdict == "data_insufficient"
+        for explanation in evidence:
+            parts = tuple(sorted(explanation.hypothesis.parts))
+            if not few or explanation.hypothesis.family not in ("pair", "input"):
+                masses[parts] = masses.get(parts, 0.0) + weights.masses[explanation.hypothesis.name]
+        wanted = sorted(masses, key=lambda parts: -masses[parts])[:SHOWN]
     suspects = []
     for parts in wanted:
         best = _best(result, names, parts[0]) if len(parts) == 1 else None
         size = None if best is None else from_evidence(names, best, result.calibration.signature_error)
         leads = max(
-            (one for one in evidence if tuple(sorted(one.hypothesis.parts)) == parts),
-            key=lambda one: weights.masses[one.hypothesis.name],
+            (explanation for explanation in evidence if tuple(sorted(explanation.hypothesis.parts)) == parts),
+            key=lambda explanation: weights.masses[explanation.hypothesis.name],
             default=None,
         )
         title = names.title(parts[0]) if leads is None else names.title_of(leads)
@@ -359,7 +364,7 @@ def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
             Suspect(
                 name=JOIN.join(parts),
                 title=title if size is None else size.title,
-                inclusion=held[parts],
+                inclusion=masses[parts],
                 size=size,
             )
         )
@@ -369,26 +374,26 @@ def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
 def _best(result: Result, names: Names, name: str) -> Evidence | None:
     """The best explanation by this effect alone, of those with an entry."""
     first = result.diagnosis.evaluations[0]
-    for one in (*first.evidence, *first.contradicted):
-        alone = one.hypothesis.parts == (name,) or one.hypothesis.name == name
-        if alone and names.entry(one.hypothesis.name) is not None:
-            return one
+    for explanation in (*first.evidence, *first.contradicted):
+        alone = explanation.hypothesis.parts == (name,) or explanation.hypothesis.name == name
+        if alone and names.entry(explanation.hypothesis.name) is not None:
+            return explanation
     return None
 
 
 def _picked(result: Result, names: Names, fitted: Sequence[Sized], pick: str) -> Sized:
-    own = next((one for one in fitted if pick in (one.name, one.explanation)), None)
-    if own is not None:
-        return own
+    picked = next((sized for sized in fitted if pick in (sized.name, sized.explanation)), None)
+    if picked is not None:
+        return picked
     if result.diagnosis.decision.verdict == "named":
-        named = ", ".join(one.name for one in fitted)
+        named = ", ".join(sized.name for sized in fitted)
         raise UsageError(f"--name {pick}: the data name {named}; leave --name out or pick of them")
     best = _best(result, names, pick)
     if best is None:
         evaluated = [
-            one.hypothesis.name
-            for one in result.diagnosis.evaluations[0].evidence
-            if names.entry(one.hypothesis.name) is not None
+            explanation.hypothesis.name
+            for explanation in result.diagnosis.evaluations[0].evidence
+            if names.entry(explanation.hypothesis.name) is not None
         ]
         raise UsageError(
             f"--name {pick}: these sensors and points do not see it; {_nearest(pick, evaluated)}"
@@ -400,7 +405,7 @@ def _put_to_the_proof(result: Result, applied: Sequence[Sized]) -> tuple[Array, 
     """What picked effects add, the gap with them on the points held out, whether the model ran in full there, and why
     they are not patched or nothing."""
     proof = result.diagnosis.proof
-    sizes = {one.explanation: one.coordinates for one in applied}
+    sizes = {sized.explanation: sized.coordinates for sized in applied}
     together = " and ".join(sizes)
     if not proof.points:
         return proof.stored(sizes), None, False, ""
@@ -420,11 +425,11 @@ def _case_patch(
     """The patch, or why there is none."""
     fitted = [
         Fitted(
-            effect=one.entry, values=one.values, ends=one.ends, tooth=one.tooth,
-            reason=_evidence_text(result, one, one is picked),
+            effect=sized.entry, values=sized.values, ends=sized.ends, tooth=sized.tooth,
+            reason=_evidence_text(result, sized, sized is picked),
         )
-        for one in applied
-        if isinstance(one.entry, Effect)
+        for sized in applied
+        if isinstance(sized.entry, Effect)
     ]  # fmt: skip
     if not fitted:
         return None, _why_not(result, bool(applied))
@@ -460,15 +465,15 @@ def _why_not(result: Result, sensors: bool) -> str:
     return "nothing is missing that these data could show"
 
 
-def _evidence_text(result: Result, one: Sized, picked: bool) -> str:
-    sizes = ", ".join(formatted(value) for value in one.shown)
+def _evidence_text(result: Result, sized: Sized, picked: bool) -> str:
+    sizes = ", ".join(formatted(value) for value in sized.shown)
     strength = f"named, {result.diagnosis.strength}"
     if picked:
         strength = "picked by the user among explanations the data do not tell apart"
     elif result.diagnosis.decision.verdict == "suspected":
         strength = "suspected, not proven"
     origin = f"fitted to measurement '{result.measurement.title}' ({result.measurement.hash[:16]})"
-    return f"{origin}: {one.title}, {sizes}, 95 %; {strength}"
+    return f"{origin}: {sized.title}, {sizes}, 95 %; {strength}"
 
 
 # Where a residual sits: groups of numbers held against the residual of a healthy rig in them.
@@ -481,10 +486,10 @@ def located(result: Result, residual: Array) -> tuple[Located, ...]:
     that go up and down together count once: ``rms`` is 1 in the mean of healthy rigs, ``excess`` the probability that
     the residual of a healthy rig is as large.
     """
-    found = result.diagnosis
-    features = [result.problem.residuals.features[row] for row in found.kept]
+    diagnosis = result.diagnosis
+    features = [result.problem.residuals.features[row] for row in diagnosis.kept]
     bands = Bands(result.measurement)
-    matrix = found.covariance.matrix
+    matrix = diagnosis.covariance.matrix
     items = locate(
         features, residual, np.sqrt(np.diagonal(matrix)), [bands.of(feature) for feature in features],
         result.data.settings, result.case.ambient.temperature,
@@ -571,7 +576,7 @@ def _row(names: Names, cause: RequiredCause) -> RequiredRow:
             effect=cause.explanation, title=title, size="", parameters=(), share=size.share, bounds=bounds,
             verdict=verdict, why=f"more than {FAR:g} times its bound", reach=size.reach,
         )  # fmt: skip
-    shown = names.sized(cause.explanation, size.coordinates, [(one, one) for one in size.coordinates]).shown
+    shown = names.sized(cause.explanation, size.coordinates, [(end, end) for end in size.coordinates]).shown
     first = shown[0]
     scale, unit = display_scale(first.unit, first.factor)
     number = f"x {first.value:.3g}" if first.factor else f"{scale * first.value:.3g} {unit}".rstrip()
@@ -581,7 +586,7 @@ def _row(names: Names, cause: RequiredCause) -> RequiredRow:
         title=title,
         size="" if far else f"{first.name} {number}",
         parameters=() if far else tuple(
-            {"name": one.name, "value": one.value, "unit": one.unit, "factor": one.factor} for one in shown
+            {"name": value.name, "value": value.value, "unit": value.unit, "factor": value.factor} for value in shown
         ),
         share=size.share,
         bounds=bounds,
@@ -606,19 +611,19 @@ def _bounds(entry: Effect | SensorError) -> str:
     if isinstance(entry, SensorError):
         scale, unit = display_scale(entry.unit if entry.unit != "SI" else "", False)
         return f"+-{scale * entry.bound:.3g} {unit}, {entry.times:g} times its uncertainty"
-    one = entry.parameters[0]
-    scale, unit = display_scale(one.unit, one.factor)
-    return f"{scale * one.low:.3g} to {scale * one.high:.3g} {unit}".rstrip()
+    parameter = entry.parameters[0]
+    scale, unit = display_scale(parameter.unit, parameter.factor)
+    return f"{scale * parameter.low:.3g} to {scale * parameter.high:.3g} {unit}".rstrip()
 
 
 def _not_modelled(outcome: Outcome) -> Iterator[RequiredRow]:
     """What engineers know of and no entry holds."""
     known = {effect.kind for effect in outcome.result.effects}
-    for one in WAITING:
-        if one.name not in known:
+    for cause in WAITING:
+        if cause.name not in known:
             yield RequiredRow(
-                effect=one.name, title=one.title, size="", parameters=(), share=None, bounds="",
-                verdict=NOT_MODELLED, why=one.lacks,
+                effect=cause.name, title=cause.title, size="", parameters=(), share=None, bounds="",
+                verdict=NOT_MODELLED, why=cause.lacks,
             )  # fmt: skip
 
 

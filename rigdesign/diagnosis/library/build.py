@@ -66,7 +66,7 @@ def build_library(
     moving = [effect for effect in effects if _reaches(effect, channels)]
     responses = _responses(predictor, case, moving, parts, say)
     say("local conductances, sources, settings")
-    own = np.array([feature.channel != POWER.name for feature in predictor.features])
+    of_sensors = np.array([feature.channel != POWER.name for feature in predictor.features])
     given = math.fsum(loss.power for loss in case.losses.given.values())
     powers = {setting.name: given for setting in settings}
     powers |= {
@@ -77,17 +77,17 @@ def build_library(
     unpaid, watt = predictor.sources(), predictor.motor_watt()
     library = Library(
         channels=tuple(channels),
-        features=tuple(feature for feature, keep in zip(predictor.features, own, strict=True) if keep),
+        features=tuple(feature for feature, keep in zip(predictor.features, of_sensors, strict=True) if keep),
         settings=tuple(settings),
-        base=base[own],
-        inputs=_by_point(predictor, own),
+        base=base[of_sensors],
+        inputs=_by_point(predictor, of_sensors),
         responses={
-            name: Response(coordinates=one.coordinates, answers=one.answers[:, own])
-            for name, one in responses.items()
+            name: Response(coordinates=response.coordinates, answers=response.answers[:, of_sensors])
+            for name, response in responses.items()
         },
-        links={name: values[own] for name, values in predictor.links().items()},
-        sources={name: (values + watt)[own] for name, values in unpaid.items()},
-        dry_sources={name: values[own] for name, values in unpaid.items()},
+        links={name: values[of_sensors] for name, values in predictor.links().items()},
+        sources={name: (values + watt)[of_sensors] for name, values in unpaid.items()},
+        dry_sources={name: values[of_sensors] for name, values in unpaid.items()},
         powers=powers,
         modes=predictor.natural_frequencies(),
         error=predictor.error,
@@ -111,11 +111,11 @@ def _reaches(effect: Effect, channels: Sequence[Channel]) -> bool:
     return dynamic or not effect.family.dynamic
 
 
-def _by_point(predictor: Predictor, own: NDArray[np.bool_]) -> dict[tuple[str, str, str], Array]:
+def _by_point(predictor: Predictor, of_sensors: NDArray[np.bool_]) -> dict[tuple[str, str, str], Array]:
     """Derivatives by the settings, each point's by itself."""
     points = np.array([feature.setting for feature in predictor.features])
     return {
-        (kind, place, setting.name): np.where(points == setting.name, values, 0.0)[own]
+        (kind, place, setting.name): np.where(points == setting.name, values, 0.0)[of_sensors]
         for (kind, place), values in predictor.inputs().items()
         for setting in predictor.settings
     }
@@ -125,19 +125,19 @@ def _responses(
     predictor: Predictor, case: Case, effects: Sequence[Effect], parts: Parts, say: Progress
 ) -> dict[str, Response]:
     """Effect -> its runs, without those that the model refuses; finished ones are kept as ``parts``."""
-    found = parts.known(say)
-    left = [effect for effect in effects if effect.name not in found]
+    responses = parts.known(say)
+    left = [effect for effect in effects if effect.name not in responses]
     works = [_Runs(predictor, case, tuple(group)) for group in _together(left)]
     size = BATCH * cores()
     for start in range(0, len(works), size):
         say(f"response {len(effects) - len(left) + 1} of {len(effects)}")
         with BackgroundTasks(works[start : start + size]) as tasks:
-            new = {name: one for made in tasks.results() for name, one in made.items()}
+            new = {name: response for made in tasks.results() for name, response in made.items()}
         parts.keep(new)
-        found |= new
+        responses |= new
         left = [effect for effect in left if effect.name not in new]
-    whole = ((effect.name, found[effect.name]) for effect in effects)
-    return {name: one for name, one in whole if one is not None}
+    whole = ((effect.name, responses[effect.name]) for effect in effects)
+    return {name: response for name, response in whole if response is not None}
 
 
 def _together(effects: Sequence[Effect]) -> list[list[Effect]]:
@@ -164,7 +164,7 @@ class _Runs:
         base = self._predictor.base
         coordinates, answers = [np.zeros(len(effect.parameters))], [np.zeros_like(base)]
         refused: list[Array] = []
-        for place in sorted(run_places(effect), key=lambda one: float(np.abs(one).max())):
+        for place in sorted(run_places(effect), key=lambda sizes: float(np.abs(sizes).max())):
             if any(np.all(np.sign(place) == np.sign(smaller)) for smaller in refused):
                 continue
             changes = effect.changes(self._case, tuple(float(value) for value in place))

@@ -61,9 +61,9 @@ def library_of(
 
     say : called with a sentence for every damaged file that is set aside
     """
-    found = stored_library(case, settings, channels, effects, say)
-    if found is not None:
-        return found
+    stored = stored_library(case, settings, channels, effects, say)
+    if stored is not None:
+        return stored
     made = build()
     _store(_folder(case, effects, measured_against(channels)), made)
     serving = made.serving(tuple(settings), tuple(channels))
@@ -80,12 +80,12 @@ def stored_library(
 ) -> Library | None:
     """Of the stored libraries that serve these points and channels the one nearest to them; None if there is none."""
     nearest, least = None, float("inf")
-    for found in _stored(_folder(case, effects, measured_against(channels)), say):
-        if not isinstance(found, Library):
+    for stored in _stored(_folder(case, effects, measured_against(channels)), say):
+        if not isinstance(stored, Library):
             continue
-        if (distance := found.distance(settings)) >= least:
+        if (distance := stored.distance(settings)) >= least:
             continue
-        serving = found.serving(tuple(settings), tuple(channels))
+        serving = stored.serving(tuple(settings), tuple(channels))
         if serving is not None:
             nearest, least = serving, distance
     return nearest
@@ -112,10 +112,10 @@ class Parts:
 
     def known(self, say: Progress = _silent) -> dict[str, Response | None]:
         """Effect -> its response, None where the model refused it; ``say`` is called for damaged files."""
-        found: dict[str, Response | None] = {}
+        responses: dict[str, Response | None] = {}
         for part in _stored(self.folder, say):
-            found |= {} if isinstance(part, Library) else part
-        return found
+            responses |= {} if isinstance(part, Library) else part
+        return responses
 
     def keep(self, responses: Mapping[str, Response | None]) -> None:
         """Store responses by effect."""
@@ -154,9 +154,9 @@ def _stored(folder: Path, say: Progress) -> Iterator[Stored]:
         except OSError as error:
             say(f"{file} cannot be read ({error.strerror}): what it holds is computed again")
             continue
-        found = _unpacked(content) if _name(content) == file.name else None
-        if found is not None:
-            yield found
+        stored = _unpacked(content) if _name(content) == file.name else None
+        if stored is not None:
+            yield stored
             continue
         with suppress(OSError):  # what cannot be renamed costs the next run the same words again
             file.replace(file.with_name(file.name + DAMAGED))
@@ -167,9 +167,9 @@ def _name(content: bytes) -> str:
     return f"{hashlib.sha256(content).hexdigest()[:16]}{ENDING}"
 
 
-def _store(folder: Path, what: Stored) -> None:
+def _store(folder: Path, stored: Stored) -> None:
     """A folder that cannot be written to costs time, not the result."""
-    content = _packed(what)
+    content = _packed(stored)
     with suppress(OSError):
         replace_whole(folder / _name(content), content)
 
@@ -192,22 +192,24 @@ class _Index(BaseModel):
     refused: list[str] = []
 
 
-def _packed(what: Stored) -> bytes:
-    responses = what.responses if isinstance(what, Library) else what
-    known = {name: one for name, one in responses.items() if one is not None}
+def _packed(stored: Stored) -> bytes:
+    responses = stored.responses if isinstance(stored, Library) else stored
+    known = {name: response for name, response in responses.items() if response is not None}
     arrays: dict[str, NDArray[Any]] = {}
-    for number, one in enumerate(known.values()):
-        arrays |= {f"coordinates {number}": one.coordinates, f"answers {number}": one.answers}
+    for number, response in enumerate(known.values()):
+        arrays |= {f"coordinates {number}": response.coordinates, f"answers {number}": response.answers}
     index = _Index(responses=list(known), refused=[name for name in responses if name not in known])
-    if isinstance(what, Library):
-        columns = {kind: getattr(what, kind) for kind in COLUMNS}
-        arrays |= {"base": what.base, "modes": what.modes}
-        arrays |= {kind: np.array(list(found.values())) for kind, found in columns.items()}
+    if isinstance(stored, Library):
+        columns = {kind: getattr(stored, kind) for kind in COLUMNS}
+        arrays |= {"base": stored.base, "modes": stored.modes}
+        arrays |= {kind: np.array(list(column.values())) for kind, column in columns.items()}
         names = {
-            kind: [(name,) if isinstance(name, str) else name for name in found]
-            for kind, found in columns.items()
+            kind: [(name,) if isinstance(name, str) else name for name in column]
+            for kind, column in columns.items()
         }
-        stated = {key: getattr(what, key) for key in ("channels", "settings", "features", "powers", "error")}
+        stated = {
+            key: getattr(stored, key) for key in ("channels", "settings", "features", "powers", "error")
+        }
         index = index.model_copy(update={**stated, "whole": True, "columns": names})
     stream = io.BytesIO()
     text = np.frombuffer(index.model_dump_json().encode(), np.uint8)

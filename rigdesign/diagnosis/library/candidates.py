@@ -91,12 +91,12 @@ def _thermocouples(places: Places) -> list[str]:
 
 def extra_points(settings: Sequence[OperatingCondition], meshes: Sequence[str]) -> tuple[Extra, ...]:
     """Points in addition to the plan: its corners if it has several, other oil, other flow, a wheel put on further."""
-    middle = sorted(settings, key=lambda one: one.speed * abs(one.torque))[len(settings) // 2]
-    slow, fast = (pick(one.speed for one in settings) for pick in (min, max))
-    light, heavy = (pick(abs(one.torque) for one in settings) for pick in (min, max))
-    found = []
+    middle = sorted(settings, key=lambda setting: setting.speed * abs(setting.torque))[len(settings) // 2]
+    slow, fast = (pick(setting.speed for setting in settings) for pick in (min, max))
+    light, heavy = (pick(abs(setting.torque) for setting in settings) for pick in (min, max))
+    extras = []
     if len(settings) > 1 and light < heavy:
-        found += [
+        extras += [
             Extra(
                 title="a point at the least speed and the greatest torque",
                 setting=replace(middle, name=f"{SPARE}slow", speed=slow, torque=heavy),
@@ -108,10 +108,10 @@ def extra_points(settings: Sequence[OperatingCondition], meshes: Sequence[str]) 
                 changed="operating_point",
             ),
         ]
-    found += _between(middle, (slow, fast), (light, heavy))
+    extras += _between(middle, (slow, fast), (light, heavy))
     if middle.inlet_temperature:
         colder = {stream: value - 20.0 for stream, value in middle.inlet_temperature.items()}
-        found.append(
+        extras.append(
             Extra(
                 title="a point with all oil 20 K colder",
                 setting=replace(middle, name=f"{SPARE}colder", inlet_temperature=colder),
@@ -120,7 +120,7 @@ def extra_points(settings: Sequence[OperatingCondition], meshes: Sequence[str]) 
         )
     if middle.flow:
         more = {stream: 1.5 * value for stream, value in middle.flow.items()}
-        found.append(
+        extras.append(
             Extra(
                 title="a point with half as much oil again",
                 setting=replace(middle, name=f"{SPARE}flow", flow=more),
@@ -129,23 +129,23 @@ def extra_points(settings: Sequence[OperatingCondition], meshes: Sequence[str]) 
         )
     if meshes:
         offset = {meshes[0]: 5 + middle.tooth_offset.get(meshes[0], 0)}
-        found.append(
+        extras.append(
             Extra(
                 title=f"a point with the wheel of {meshes[0]} put on five teeth further",
                 setting=replace(middle, name=f"{SPARE}re-indexed", tooth_offset=offset),
                 changed="reassembly",
             )
         )
-    return tuple(found)
+    return tuple(extras)
 
 
 def _between(
     middle: OperatingCondition, speeds: tuple[float, float], torques: tuple[float, float]
 ) -> list[Extra]:
     """Points where a plan has one torque, or two speeds: half the torque, and a speed between."""
-    found = []
+    extras = []
     if torques[0] == torques[1]:
-        found.append(
+        extras.append(
             Extra(
                 title="a point at half the torque",
                 setting=replace(middle, name=f"{SPARE}half torque", torque=0.5 * middle.torque),
@@ -154,10 +154,10 @@ def _between(
         )
         if speeds[0] < speeds[1]:
             between = replace(middle, name=f"{SPARE}speed between", speed=0.5 * (speeds[0] + speeds[1]))
-            found.append(
+            extras.append(
                 Extra(title="a point at a speed between", setting=between, changed="operating_point")
             )
-    return found
+    return extras
 
 
 # What further sensors and operating points cost: as the measurement set states, else by their usual ratio.

@@ -99,7 +99,10 @@ class Library:
         row = {feature: number for number, feature in enumerate(self.features)}
         wanted = features_of(settings, channels)
         rows = np.array(
-            [row[replace(one, channel=names[one.channel], setting=planned[one.setting])] for one in wanted],
+            [
+                row[replace(feature, channel=names[feature.channel], setting=planned[feature.setting])]
+                for feature in wanted
+            ],
             dtype=np.intp,
         )
         run_of = {planned[run.name]: run for run in settings}
@@ -110,10 +113,12 @@ class Library:
         }
         base = self.base[rows].copy()
         for place in points:
-            at = self.settings[place]
+            setting = self.settings[place]
             for (kind, where, point), values in inputs.items():
-                if point == run_of[at.name].name and states(at, kind, where):
-                    base += (value_of(run_of[at.name], kind, where) - value_of(at, kind, where)) * values
+                if point == run_of[setting.name].name and states(setting, kind, where):
+                    base += (
+                        value_of(run_of[setting.name], kind, where) - value_of(setting, kind, where)
+                    ) * values
         cut = self._cut(rows)
         return replace(
             cut,
@@ -148,8 +153,8 @@ class Library:
             base=both.values(self.base, other.base),
             inputs=both.columns(self.inputs, other.inputs),
             responses={
-                name: both.response(one, other.responses[name])
-                for name, one in self.responses.items()
+                name: both.response(response, other.responses[name])
+                for name, response in self.responses.items()
                 if name in other.responses
             },
             links=both.columns(self.links, other.links),
@@ -178,8 +183,8 @@ class Library:
             base=self.base[rows],
             inputs=_of_rows(self.inputs, rows),
             responses={
-                name: Response(coordinates=one.coordinates, answers=one.answers[:, rows])
-                for name, one in self.responses.items()
+                name: Response(coordinates=response.coordinates, answers=response.answers[:, rows])
+                for name, response in self.responses.items()
             },
             links=_of_rows(self.links, rows),
             sources=_of_rows(self.sources, rows),
@@ -214,8 +219,8 @@ class _Both:
 
     def response(self, first: Response, second: Response) -> Response:
         """At the coordinates that the model could compute for both."""
-        place = {tuple(one): number for number, one in enumerate(second.coordinates)}
-        shared = [number for number, one in enumerate(first.coordinates) if tuple(one) in place]
+        place = {tuple(sizes): number for number, sizes in enumerate(second.coordinates)}
+        shared = [number for number, sizes in enumerate(first.coordinates) if tuple(sizes) in place]
         same = [place[tuple(first.coordinates[number])] for number in shared]
         return Response(
             coordinates=first.coordinates[shared],
@@ -233,11 +238,11 @@ NEAR_SENSOR = "near:"
 
 def _of_sensors(sources: Mapping[str, Array], names: Mapping[str, str]) -> dict[str, Array]:
     """Sources at the sensors of a set by the names they have there; ``names``: of the set -> of the library."""
-    own = {f"{NEAR_SENSOR}{kept}": f"{NEAR_SENSOR}{here}" for here, kept in names.items()}
+    renamed = {f"{NEAR_SENSOR}{kept}": f"{NEAR_SENSOR}{here}" for here, kept in names.items()}
     return {
-        own.get(name, name): values
+        renamed.get(name, name): values
         for name, values in sources.items()
-        if name in own or not name.startswith(NEAR_SENSOR)
+        if name in renamed or not name.startswith(NEAR_SENSOR)
     }
 
 
@@ -273,8 +278,8 @@ def _matches(
     wanted: Sequence[T], offered: Sequence[T], distance: Callable[[T, T], float]
 ) -> list[int] | None:
     """For each wanted one the place of the nearest offered one, none used twice; None if one is a distance of 1 off."""
-    found = nearest_of(wanted, offered, distance, 1.0)
-    return list(found.values()) if len(found) == len(wanted) else None
+    matches = nearest_of(wanted, offered, distance, 1.0)
+    return list(matches.values()) if len(matches) == len(wanted) else None
 
 
 def _reads_as(kept: Channel, wanted: Channel) -> float:

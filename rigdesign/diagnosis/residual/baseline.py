@@ -97,23 +97,23 @@ class Change:
         residuals = residuals.on_the_scale_of(baseline)
         here, there = residuals.covariance(amplitudes), baseline.covariance(amplitudes)
         after, before = here.deviations, _matched(there, here)
-        own, other = residuals.own_spread(amplitudes), baseline.own_spread(amplitudes)
+        spread, spread_before = residuals.own_spread(amplitudes), baseline.own_spread(amplitudes)
         again = met_again(residuals.library.settings, baseline.library.settings)
         twins, step = _same_numbers(residuals, baseline, again), _speed_steps(residuals, baseline, again)
         amplitude = twins @ amplitudes_of(baseline.features, baseline.values)
-        cross = after @ before.T + TWINS**2 * own[:, None] * twins * other[None, :]
-        known = before @ before.T + TWINS**2 * np.diag(other**2)
+        cross = after @ before.T + TWINS**2 * spread[:, None] * twins * spread_before[None, :]
+        known = before @ before.T + TWINS**2 * np.diag(spread_before**2)
         noise_before = np.diag(baseline.noise**2) + baseline.scatter
         both = after @ after.T
         expected, covariance = _given(
-            known, cross, both + TWINS**2 * np.diag(own**2), noise_before, baseline.residual
+            known, cross, both + TWINS**2 * np.diag(spread**2), noise_before, baseline.residual
         )
         alone = np.diag(residuals.noise**2) + residuals.scatter
         return cls(
             residuals=residuals,
             expected=expected,
             known=covariance + alone,
-            shared=both + np.diag(own**2),
+            shared=both + np.diag(spread**2),
             slope=step * amplitudes_of(residuals.features, _by_speed(residuals)),
             steep=step * _resonances(residuals, baseline).change(amplitude),
             amplitude=amplitude,
@@ -149,14 +149,16 @@ class Change:
         Orders are no part of it.
         """
         residuals = self.residuals
-        own = np.array([one.channel == channel and not one.order for one in residuals.features], dtype=bool)
-        if not own.any():
-            return np.zeros(len(own))
-        level = residuals.level[own]
+        of_channel = np.array(
+            [feature.channel == channel and not feature.order for feature in residuals.features], dtype=bool
+        )
+        if not of_channel.any():
+            return np.zeros(len(of_channel))
+        level = residuals.level[of_channel]
         if "temperature" in residuals.channels[channel].quantity:
             level = np.full_like(level, np.sqrt(np.mean(level**2)))
-        moved = np.zeros(len(own))
-        moved[own] = level
+        moved = np.zeros(len(of_channel))
+        moved[of_channel] = level
         return moved
 
     def whitened(self, drift: Drift) -> Whitened:
@@ -178,8 +180,8 @@ def differenced(
 
 def _resonances(residuals: ResidualProblem, baseline: ResidualProblem) -> Resonances:
     """Natural frequencies near the orders of a set, those measured on the healthy rig among them."""
-    own = residuals.resonances
-    return replace(own, modes=np.concatenate([own.modes, baseline.resonances.modes]))
+    resonances = residuals.resonances
+    return replace(resonances, modes=np.concatenate([resonances.modes, baseline.resonances.modes]))
 
 
 def _matched(there: Covariance, here: Covariance) -> Array:
@@ -196,12 +198,12 @@ def _matched(there: Covariance, here: Covariance) -> Array:
 def _same_numbers(residuals: ResidualProblem, baseline: ResidualProblem, again: Mapping[str, str]) -> Array:
     """(n, m) one where two numbers are the same channel and order at a point that was met again."""
     others = {(f.channel, f.setting, f.order, f.part): j for j, f in enumerate(baseline.features)}
-    found = np.zeros((len(residuals.features), len(baseline.features)))
+    same = np.zeros((len(residuals.features), len(baseline.features)))
     for row, f in enumerate(residuals.features):
         twin = others.get((f.channel, again[f.setting], f.order, f.part)) if f.setting in again else None
         if twin is not None:
-            found[row, twin] = 1.0
-    return found
+            same[row, twin] = 1.0
+    return same
 
 
 def _speed_steps(residuals: ResidualProblem, baseline: ResidualProblem, again: Mapping[str, str]) -> Array:
@@ -218,17 +220,17 @@ def _speed_steps(residuals: ResidualProblem, baseline: ResidualProblem, again: M
 def _by_speed(residuals: ResidualProblem) -> Array:
     """(n,) derivative of the prediction by the logarithm of the speed of its point."""
     speeds = {setting.name: setting.speed for setting in residuals.library.settings}
-    found = np.zeros(len(residuals.features))
+    slope = np.zeros(len(residuals.features))
     for (kind, _, point), values in residuals.library.inputs.items():
         if kind == "speed":
-            found += speeds[point] * values
-    return found
+            slope += speeds[point] * values
+    return slope
 
 
-def _given(known: Array, cross: Array, own: Array, noise: Array, residual: Array) -> tuple[Array, Array]:
+def _given(known: Array, cross: Array, shared: Array, noise: Array, residual: Array) -> tuple[Array, Array]:
     """Mean (n,) and covariance (n, n) of the shared part given another set's residual (m,)."""
     solved = cho_solve(cho_factor(known + noise), np.column_stack([residual, cross.T]), check_finite=False)
-    return np.asarray(cross @ solved[:, 0]), np.asarray(own - cross @ solved[:, 1:])
+    return np.asarray(cross @ solved[:, 0]), np.asarray(shared - cross @ solved[:, 1:])
 
 
 # Amplitudes of a healthy rig's covariance and its drift from healthy sets, by marginal likelihood.
@@ -253,7 +255,7 @@ def group_of(
         set, residuals each set's own
     """
     first = sets[0]
-    spaces = [plain(one, amplitudes, inflation) for one in sets]
+    spaces = [plain(residuals, amplitudes, inflation) for residuals in sets]
     parts: dict[str, Array] = {}
     for column in spaces[0].covariance.columns:
         values = column.spread * column.values
@@ -262,13 +264,13 @@ def group_of(
     nothing = Amplitudes(**dict.fromkeys((*OWN_KINDS, "answer"), 0.0))
     for kind in OWN_KINDS:
         alone = nothing.with_values({kind: 1.0})
-        own = first.own_spread(alone)
-        if own.any():
-            parts[kind] = np.diag(own**2)
+        spread = first.own_spread(alone)
+        if spread.any():
+            parts[kind] = np.diag(spread**2)
     return Group(
-        noise=np.mean([one.base_noise(nothing) for one in sets], axis=0),
+        noise=np.mean([residuals.base_noise(nothing) for residuals in sets], axis=0),
         parts=parts,
-        residuals=np.stack([one.raw for one in spaces], axis=1),
+        residuals=np.stack([space.raw for space in spaces], axis=1),
     )
 
 

@@ -167,11 +167,13 @@ def _channels(
     for name, channel in channels.items():
         if channel.quantity in ORDER_QUANTITIES | MODAL_QUANTITIES:
             continue
-        own = np.array([feature.channel == name for feature in features], dtype=np.float64) * level
-        if own.any():
-            columns.append(Column(name=f"channel {name}", kind="channel", values=own, spread=1.0))
+        values = np.array([feature.channel == name for feature in features], dtype=np.float64) * level
+        if values.any():
+            columns.append(Column(name=f"channel {name}", kind="channel", values=values, spread=1.0))
             columns.append(
-                Column(name=f"channel {name} by speed", kind="channel_speed", values=own * speed, spread=1.0)
+                Column(
+                    name=f"channel {name} by speed", kind="channel_speed", values=values * speed, spread=1.0
+                )
             )
     return columns
 
@@ -189,11 +191,11 @@ def _series(
         name, order, part = key
         if channels[name].quantity not in ORDER_QUANTITIES:
             continue
-        own = np.array([(f.channel, f.order, f.part) == key for f in features], dtype=np.float64) * level
+        values = np.array([(f.channel, f.order, f.part) == key for f in features], dtype=np.float64) * level
         kind = series_kind(order, mesh_orders)
         label = f"{name} order {order:g} {part}"
-        columns.append(Column(name=label, kind=kind, values=own, spread=1.0))
-        columns.append(Column(name=f"{label} by speed", kind=kind, values=own * speed, spread=1.0))
+        columns.append(Column(name=label, kind=kind, values=values, spread=1.0))
+        columns.append(Column(name=f"{label} by speed", kind=kind, values=values * speed, spread=1.0))
     return columns
 
 
@@ -281,13 +283,13 @@ class GaugeRow:
 
 def gauge_rows(features: Sequence[Feature], channels: Mapping[str, Channel]) -> Iterator[GaugeRow]:
     """All gauges by gear, window and point."""
-    found: dict[tuple[str, str, str], list[int]] = {}
+    gauges: dict[tuple[str, str, str], list[int]] = {}
     for row, feature in enumerate(features):
         channel = channels[feature.channel]
         if channel.quantity == "root_strain" and feature.part != "unloaded":
             gear = channel.place.rpartition(".")[0]
-            found.setdefault((gear, feature.part, feature.setting), []).append(row)
-    for (gear, window, point), rows in found.items():
+            gauges.setdefault((gear, feature.part, feature.setting), []).append(row)
+    for (gear, window, point), rows in gauges.items():
         face = np.array([channels[features[row].channel].face for row in rows])
         yield GaugeRow(gear=gear, window=window, point=point, rows=tuple(rows), shapes=shapes_over(face))
 
@@ -309,11 +311,11 @@ def mode_columns(features: Sequence[Feature], level: Array, channels: Mapping[st
     alike: dict[tuple[str, str, str], Array] = {}
     columns = []
     for row in gauge_rows(features, channels):
-        at = np.array(row.rows, dtype=np.intp)
+        gauges = np.array(row.rows, dtype=np.intp)
         for mode, shape in row.shapes.items():
             here = np.zeros(len(features))
             # a shape of unit mean square over the gauges: the share is of the strain of one gauge
-            here[at] = shape * np.sqrt(len(at)) * float(level[at].mean())
+            here[gauges] = shape * np.sqrt(len(gauges)) * float(level[gauges].mean())
             key = (row.gear, row.window, mode)
             alike[key] = alike.get(key, np.zeros(len(features))) + here
             name = f"{mode} of the gauges of {row.gear}, {row.window}"
@@ -463,40 +465,40 @@ class Contest:
 
     def evaluated(self, evidence: Sequence[Evidence]) -> list[Evidence]:
         """The best of them evaluated again, the others as they were."""
-        ordered = sorted(evidence, key=lambda one: -one.log_bayes)
-        return [self.again(one) for one in ordered[:CONTENDERS]] + ordered[CONTENDERS:]
+        ordered = sorted(evidence, key=lambda explanation: -explanation.log_bayes)
+        return [self.again(explanation) for explanation in ordered[:CONTENDERS]] + ordered[CONTENDERS:]
 
-    def again(self, one: Evidence) -> Evidence:
+    def again(self, explanation: Evidence) -> Evidence:
         """One explanation, linear about its best fit, with the error of its answer there."""
         if (
-            self.signature.error_of(one.hypothesis) == 0.0
-            or not one.columns.shape[1]
-            or not np.any(one.answer)
+            self.signature.error_of(explanation.hypothesis) == 0.0
+            or not explanation.columns.shape[1]
+            or not np.any(explanation.answer)
         ):
-            return one
-        base = one.answer - one.columns @ np.array(one.coordinates)
-        products = _Products.of(self, one, base)
+            return explanation
+        base = explanation.answer - explanation.columns @ np.array(explanation.coordinates)
+        products = _Products.of(self, explanation, base)
         shares = SHARES if products.alone.any() else SHARES[:1]
-        found = [self._at(products, one, base, share) for share in shares]
-        log_bayes = float(logsumexp([other.log_bayes for other in found])) - float(np.log(len(shares)))
-        return replace(max(found, key=lambda other: other.log_bayes), log_bayes=log_bayes)
+        at_shares = [self._at(products, explanation, base, share) for share in shares]
+        log_bayes = float(logsumexp([other.log_bayes for other in at_shares])) - float(np.log(len(shares)))
+        return replace(max(at_shares, key=lambda other: other.log_bayes), log_bayes=log_bayes)
 
-    def _at(self, products: "_Products", one: Evidence, base: Array, share: float) -> Evidence:
+    def _at(self, products: "_Products", explanation: Evidence, base: Array, share: float) -> Evidence:
         """One explanation with a share of the error of every number by itself."""
         inner, logarithm = products.inside(share)
-        count = one.columns.shape[1]
+        count = explanation.columns.shape[1]
         gram, load, square = inner[:count, :count], inner[:count, count], float(inner[count, count])
         fall = self.space.chi_square - square
         inverse = inverse_of(gram)
-        best = best_within(gram, load, inverse @ load, one.hypothesis.bounds)
+        best = best_within(gram, load, inverse @ load, explanation.hypothesis.bounds)
         gain = fall + float(2.0 * best @ load - best @ gram @ best)
         return replace(
-            one,
-            log_bayes=min(mixed(gram, load, one.spreads) + 0.5 * fall, 0.5 * gain) - 0.5 * logarithm,
+            explanation,
+            log_bayes=min(mixed(gram, load, explanation.spreads) + 0.5 * fall, 0.5 * gain) - 0.5 * logarithm,
             coordinates=tuple(float(value) for value in best),
             deviations=deviations_of(inverse),
             gain=gain,
-            answer=base + one.columns @ best,
+            answer=base + explanation.columns @ best,
         )
 
 
@@ -518,19 +520,23 @@ class _Products:
     alone: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, contest: Contest, one: Evidence, base: Array) -> "_Products":
+    def of(cls, contest: Contest, explanation: Evidence, base: Array) -> "_Products":
         space, lower = contest.space, contest.space.covariance.lower
-        own = release_of(space, one.hypothesis.own).directions
-        columns = np.column_stack([one.columns, space.freed(one.hypothesis.own) - base])
-        rows, alone = contest.signature.rows(one.hypothesis, lower @ one.answer, np.diagonal(space.precision))
-        solved = solve_triangular(lower, np.hstack([own, columns]), lower=True, trans="T", check_finite=False)
+        released = release_of(space, explanation.hypothesis.own).directions
+        columns = np.column_stack([explanation.columns, space.freed(explanation.hypothesis.own) - base])
+        rows, alone = contest.signature.rows(
+            explanation.hypothesis, lower @ explanation.answer, np.diagonal(space.precision)
+        )
+        solved = solve_triangular(
+            lower, np.hstack([released, columns]), lower=True, trans="T", check_finite=False
+        )
         reached = rows @ solved
-        taken = own.shape[1]
+        taken = released.shape[1]
         return cls(
-            own=own.T @ own,
+            own=released.T @ released,
             reached=reached[:, :taken],
             errors=rows @ (rows @ space.precision).T,
-            through_own=own.T @ columns,
+            through_own=released.T @ columns,
             through_errors=reached[:, taken:],
             columns=columns.T @ columns,
             alone=alone,

@@ -96,7 +96,10 @@ def _laws(library: Library) -> dict[str, Array]:
 def _in_the_pipes(library: Library, channels: Mapping[str, Channel]) -> Iterator[UnmodelledCause]:
     """A heater or a pump between the thermometer of a stream and the gearbox: warmer by less the more oil flows."""
     streams = dict.fromkeys(place for kind, place, _ in library.inputs if kind == "inlet_temperature")
-    flows = {stream: {one.name: one.flow.get(stream, 1.0) for one in library.settings} for stream in streams}
+    flows = {
+        stream: {setting.name: setting.flow.get(stream, 1.0) for setting in library.settings}
+        for stream in streams
+    }
     for stream in streams:
         answers = [
             library.inputs["inlet_temperature", stream, point] / flow
@@ -128,12 +131,12 @@ def _at_sensors(library: Library, channels: Mapping[str, Channel]) -> Iterator[U
 def _orders(library: Library, channels: Mapping[str, Channel]) -> Iterator[UnmodelledCause]:
     """An order of one channel, or of all channels of its kind, free in phase but the same at all points."""
     laws = _laws(library)
-    found = dict.fromkeys(
+    orders = dict.fromkeys(
         (feature.channel, feature.order)
         for feature in library.features
         if channels[feature.channel].quantity in ORDER_QUANTITIES and feature.order
     )
-    for name, order in found:
+    for name, order in orders:
         parts = [
             np.array(
                 [(f.channel, f.order, f.part) == (name, order, part) for f in library.features],
@@ -178,11 +181,11 @@ def physical(
     for _, response, _, tooth in copies:
         rows = response.answers if response.nonlinear else response.sensitivity().T
         runs.append(turning.turned(rows, tooth, teeth_a_turn) if tooth else rows)
-    found = [
+    hypotheses = [
         _curve(effect, response, name, white) if response.nonlinear else _plane(effect, name, white)
         for (effect, response, name, _), white in zip(copies, whitened(covariance, runs), strict=True)
     ]
-    return [one for one in found if _reach(one) > least]
+    return [hypothesis for hypothesis in hypotheses if _reach(hypothesis) > least]
 
 
 def whitened(covariance: Covariance | None, rows: Sequence[Array]) -> list[Array]:
@@ -240,13 +243,13 @@ def sensor(covariance: Covariance | None, errors: Sequence[SensorError]) -> list
 def without_a_name(covariance: Covariance, causes: Iterable[UnmodelledCause]) -> list[Hypothesis]:
     """Unmodelled causes, of any size; the prior of the size is as wide as that of something seen at `SIGMAS`."""
     causes = list(causes)
-    found = []
+    hypotheses = []
     columns = whitened(covariance, [columns.T for _, _, columns in causes])
     for (family, name, _), white in zip(causes, columns, strict=True):
         longest = float(np.linalg.norm(white, axis=1).max())
         if longest <= 1e-9:
             continue
-        found.append(
+        hypotheses.append(
             Hypothesis(
                 name=f"{UNKNOWN}{name}",
                 family=family,
@@ -257,7 +260,7 @@ def without_a_name(covariance: Covariance, causes: Iterable[UnmodelledCause]) ->
                 limits=(np.full(white.shape[0], -np.inf), np.full(white.shape[0], np.inf)),
             )
         )
-    return found
+    return hypotheses
 
 
 # Data that are wrong as they stand: exchanged channels or points, another unit or sign, an index pulse offset.
@@ -285,11 +288,11 @@ def data_error(
         *_units(features, channels, values, met_before=met_before),
     )
     residuals = whitened(covariance, [(changed - expected)[None, :] for _, changed in changes])
-    found = [
+    hypotheses = [
         Hypothesis(name=name, family="input", parts=(name,), residual=residual[0])
         for (name, _), residual in zip(changes, residuals, strict=True)
     ]
-    return [*found, *(_turned_mark(covariance, features, values, expected) if met_before else [])]
+    return [*hypotheses, *(_turned_mark(covariance, features, values, expected) if met_before else [])]
 
 
 COMMON = 0.5
@@ -302,7 +305,7 @@ def _swapped_channels(
     rows: dict[str, dict[tuple[str, float, str], int]] = {}
     for row, feature in enumerate(features):
         rows.setdefault(feature.channel, {})[feature.setting, feature.order, feature.part] = row
-    found = []
+    exchanges = []
     for first, second in combinations(rows, 2):
         common = [key for key in rows[first] if key in rows[second]]
         most = max(len(rows[first]), len(rows[second]))
@@ -312,8 +315,8 @@ def _swapped_channels(
         there = np.array([rows[second][key] for key in common])
         changed = values.copy()
         changed[here], changed[there] = values[there], values[here]
-        found.append((f"swapped_channels:{first},{second}", changed))
-    return found
+        exchanges.append((f"swapped_channels:{first},{second}", changed))
+    return exchanges
 
 
 def _swapped_points(features: Sequence[Feature], values: Array) -> list[tuple[str, Array]]:
@@ -321,7 +324,7 @@ def _swapped_points(features: Sequence[Feature], values: Array) -> list[tuple[st
     for row, feature in enumerate(features):
         if feature.setting:
             rows.setdefault(feature.setting, {})[feature.channel, feature.order, feature.part] = row
-    found = []
+    exchanges = []
     for first, second in combinations(rows, 2):
         common = [key for key in rows[first] if key in rows[second]]
         if not common:
@@ -330,8 +333,8 @@ def _swapped_points(features: Sequence[Feature], values: Array) -> list[tuple[st
         there = np.array([rows[second][key] for key in common])
         changed = values.copy()
         changed[here], changed[there] = values[there], values[here]
-        found.append((f"swapped_points:{first},{second}", changed))
-    return found
+        exchanges.append((f"swapped_points:{first},{second}", changed))
+    return exchanges
 
 
 _Misreading = tuple[str, float, float]
@@ -380,14 +383,14 @@ def _units(
 
     Foretold badly, they would be taken for a unit that makes them small.
     """
-    found = []
+    changes = []
     for name in dict.fromkeys(feature.channel for feature in features if met_before or feature.order == 0.0):
         rows = np.array([row for row, feature in enumerate(features) if feature.channel == name])
-        for what, factor, shift in _MISREAD.get(channels[name].quantity, ()):
+        for unit, factor, shift in _MISREAD.get(channels[name].quantity, ()):
             changed = values.copy()
             changed[rows] = (values[rows] - shift) / factor
-            found.append((f"unit:{name} ({what})", changed))
-    return found
+            changes.append((f"unit:{name} ({unit})", changed))
+    return changes
 
 
 STEP = 0.3
@@ -406,8 +409,10 @@ def _turned_mark(
     orders = np.unique(turning.orders[turning.orders > 0.0])
     if not len(orders):
         return []
-    own = turning.order_of(len(features)) == orders[:, None]
-    parts = np.vstack([values * ~own.any(axis=0) - expected, values * own, -turning.ahead(values) * own])
+    of_order = turning.order_of(len(features)) == orders[:, None]
+    parts = np.vstack(
+        [values * ~of_order.any(axis=0) - expected, values * of_order, -turning.ahead(values) * of_order]
+    )
     [white] = whitened(covariance, [parts])
     products = white @ white.T
 

@@ -17,12 +17,12 @@ REACH = 3.0
 """Standard deviations of an inspection up to which an effect is believed."""
 
 
-def inspected(effects: Iterable[Effect], found: Mapping[str, float], source: str) -> tuple[Effect, ...]:
+def inspected(effects: Iterable[Effect], spreads: Mapping[str, float], source: str) -> tuple[Effect, ...]:
     """Effects with the spreads that inspections leave.
 
     Parameters
     ----------
-    found : effect -> standard deviation of what was measured of it [m]
+    spreads : effect -> standard deviation of what was measured of it [m]
     source : of the set, for faults
 
     Raises
@@ -31,17 +31,17 @@ def inspected(effects: Iterable[Effect], found: Mapping[str, float], source: str
         A name that is no effect of the case with a length as its one parameter.
     """
     effects = tuple(effects)
-    faults = list(_faults(effects, found))
+    faults = list(_faults(effects, spreads))
     if faults:
         raise MeasurementError(faults, source)
     return tuple(
-        _narrowed(effect, found[effect.name]) if effect.name in found else effect for effect in effects
+        _narrowed(effect, spreads[effect.name]) if effect.name in spreads else effect for effect in effects
     )
 
 
-def _faults(effects: tuple[Effect, ...], found: Mapping[str, float]) -> Iterator[Fault]:
+def _faults(effects: tuple[Effect, ...], spreads: Mapping[str, float]) -> Iterator[Fault]:
     known = tuple(effect.name for effect in effects if _measured(effect))
-    for name in found:
+    for name in spreads:
         if name not in known:
             yield unknown(f"inspections.{name}", name, known, "effect that an inspection measures")
 

@@ -127,8 +127,8 @@ class ResidualProblem:
     @cached_property
     def natural_frequencies(self) -> Array:
         """(n,) as predicted, zero for numbers that are none."""
-        own = [self.channels[one.channel].quantity == "natural_frequency" for one in self.features]
-        return np.where(own, self.library.base, 0.0)
+        modal = [self.channels[feature.channel].quantity == "natural_frequency" for feature in self.features]
+        return np.where(modal, self.library.base, 0.0)
 
     @cached_property
     def resonances(self) -> Resonances:
@@ -185,11 +185,12 @@ class ResidualProblem:
         differently.
         """
         there = {
-            (one.channel, one.order): level for one, level in zip(other.features, other.level, strict=True)
+            (feature.channel, feature.order): level
+            for feature, level in zip(other.features, other.level, strict=True)
         }
         level = [
-            there.get((one.channel, one.order), own) if one.order else own
-            for one, own in zip(self.features, self.level, strict=True)
+            there.get((feature.channel, feature.order), here) if feature.order else here
+            for feature, here in zip(self.features, self.level, strict=True)
         ]
         return replace(self, level=np.array(level))
 
@@ -199,9 +200,9 @@ class ResidualProblem:
 
     def base_noise(self, amplitudes: Amplitudes) -> Array:
         """(n, n) covariance of noise, settings read and what each number is off by itself."""
-        own = self.own_spread(amplitudes)
+        spread = self.own_spread(amplitudes)
         near = amplitudes.frequency * self.shift
-        alone = np.diag(self.noise**2 + own**2 + near**2 + self.library.error**2 * self._thermal)
+        alone = np.diag(self.noise**2 + spread**2 + near**2 + self.library.error**2 * self._thermal)
         return np.asarray(alone + amplitudes.answer**2 * self.answer_error + self.scatter)
 
     @cached_property
@@ -210,12 +211,16 @@ class ResidualProblem:
 
         Of a thermocouple the scale is conduction along its leads, which stays with its seat: it shifts by its offset.
         """
-        seated = {f"sensor_scale:{n}" for n, one in self.channels.items() if one.quantity == "temperature"}
+        seated = {
+            f"sensor_scale:{n}" for n, channel in self.channels.items() if channel.quantity == "temperature"
+        }
         shifts = [error.spread * error.values for error in self.errors if error.name not in seated]
         for name in dict.fromkeys(feature.channel for feature in self.features):
-            own = np.array([one.channel == name and not one.order for one in self.features], dtype=np.float64)
-            if own.any():
-                shifts.append(own * np.sqrt(np.mean(self.noise[own > 0.0] ** 2)))
+            of_channel = np.array(
+                [feature.channel == name and not feature.order for feature in self.features], dtype=np.float64
+            )
+            if of_channel.any():
+                shifts.append(of_channel * np.sqrt(np.mean(self.noise[of_channel > 0.0] ** 2)))
         return np.array(shifts).reshape(-1, len(self.features)).T
 
     @cached_property
@@ -223,12 +228,12 @@ class ResidualProblem:
         """(n, k) by the logarithm of every loss and film, which a rig does not repeat from day to day."""
         known = self.library.responses
         moving = [
-            known[one.name].sensitivity()[:, :1]
-            for one in self.effects
-            if one.family in (LOSS, FILM)
-            and one.healthy > 0.0
-            and one.parameters[0].factor
-            and one.name in known
+            known[effect.name].sensitivity()[:, :1]
+            for effect in self.effects
+            if effect.family in (LOSS, FILM)
+            and effect.healthy > 0.0
+            and effect.parameters[0].factor
+            and effect.name in known
         ]
         return np.hstack(moving) if moving else np.zeros((len(self.features), 0))
 
@@ -249,12 +254,12 @@ class ResidualProblem:
 
     def curves(self) -> dict[str, Curve]:
         """Effect -> its answer over its size, of nonlinear constants of one parameter."""
-        found = {}
+        curves = {}
         for effect in self.effects:
             response = self.library.responses.get(effect.name)
             if effect.healthy > 0.0 and response is not None and response.nonlinear:
-                found[effect.name] = Curve.of(response.coordinates[:, 0], response.answers)
-        return found
+                curves[effect.name] = Curve.of(response.coordinates[:, 0], response.answers)
+        return curves
 
     @property
     def _thermal(self) -> Array:
@@ -268,9 +273,9 @@ class ResidualProblem:
     def inflated(self, inflation: Mapping[str, float]) -> Array:
         """(n, n) covariance from spreads [coordinate] by likeness of cause."""
         columns = [
-            inflation[one.likeness] * one.values
-            for one in (self.directions() if inflation else ())
-            if one.likeness in inflation
+            inflation[column.likeness] * column.values
+            for column in (self.directions() if inflation else ())
+            if column.likeness in inflation
         ]
         both = np.hstack(columns) if columns else np.zeros((len(self.features), 0))
         return np.asarray(both @ both.T)
@@ -293,7 +298,7 @@ def compare(
     features = tuple(data.features[row] for row in usable)
     cut = library.rows(features)
     channels = {name: entry.channel for name, entry in data.channels.items()}
-    own = {
+    channel_errors = {
         name: Stated(offset=entry.offset_sd, scale=entry.scale_sd) for name, entry in data.channels.items()
     }
     noise = {setting.name: noise for setting, noise in zip(data.settings, data.setting_noise, strict=True)}
@@ -305,7 +310,7 @@ def compare(
         channels=channels,
         effects=tuple(effects),
         errors=(
-            *sensor_errors(cut, channels, own, data.values[usable]),
+            *sensor_errors(cut, channels, channel_errors, data.values[usable]),
             *input_errors(cut, data.settings, stated),
         ),
         scatter=setting_scatter(cut, noise),
@@ -329,11 +334,11 @@ def plain(
     sizes = dict.fromkeys(curves, 0.0)
     for _ in range(BENDING_STEPS if curves else 0):
         residual = residuals.residual - sum(nonlinear_parts.values(), np.zeros(len(residuals.features)))
-        found = _constants_at(covariance, residual, curves)
+        constants = _constants_at(covariance, residual, curves)
         sizes = {
-            effect: size + BENDING_SHARE * (found[effect] - size)
+            effect: size + BENDING_SHARE * (constants[effect] - size)
             for effect, size in sizes.items()
-            if effect in found
+            if effect in constants
         }
         slopes = {effect: curves[effect].sensitivity(size) for effect, size in sizes.items()}
         nonlinear_parts = {
@@ -351,7 +356,7 @@ def plain(
 
 def outliers_of(residuals: ResidualProblem, space: Whitened) -> tuple[Outlier, ...]:
     """Single readings that the others of their series contradict."""
-    series = [(one.channel, one.order) for one in residuals.features]
+    series = [(feature.channel, feature.order) for feature in residuals.features]
     return reject(space.covariance.matrix, space.raw, series)
 
 
@@ -364,9 +369,9 @@ BENDING_SHARE = 0.6
 def _constants_at(covariance: Covariance, residual: Array, curves: Mapping[str, Curve]) -> dict[str, float]:
     """Where the data put every constant that has a curve, all its columns together, kept within its bounds."""
     solved = cho_solve((covariance.lower, True), residual)
-    found: dict[str, float] = {}
+    sizes: dict[str, float] = {}
     for place, column in enumerate(covariance.columns):
         if column.effect in curves:
             size = covariance.spread(place) ** 2 * float(column.values @ solved)
-            found[column.effect] = found.get(column.effect, 0.0) + size
-    return {effect: float(np.clip(size, *curves[effect].bounds)) for effect, size in found.items()}
+            sizes[column.effect] = sizes.get(column.effect, 0.0) + size
+    return {effect: float(np.clip(size, *curves[effect].bounds)) for effect, size in sizes.items()}

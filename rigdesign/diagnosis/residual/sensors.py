@@ -88,41 +88,41 @@ def sensor_errors(
     """
     above = excess(library.features, library.base, channels, library.settings)
     read = np.where([feature.order != 0.0 for feature in library.features], values, library.base)
-    found = []
+    errors = []
     for name, channel in channels.items():
-        own = np.array([feature.channel == name for feature in library.features], dtype=np.float64)
-        one = stated.get(name, Stated())
-        if not own.any():
+        of_channel = np.array([feature.channel == name for feature in library.features], dtype=np.float64)
+        uncertainty = stated.get(name, Stated())
+        if not of_channel.any():
             continue
         orders = channel.quantity in ORDER_QUANTITIES
         if channel.quantity == "root_strain":
-            found += _of_gauge(library, name, one)
+            errors += _of_gauge(library, name, uncertainty)
             continue
-        if one.offset > 0.0:
+        if uncertainty.offset > 0.0:
             mean = np.array([feature.order == 0.0 for feature in library.features], dtype=np.float64)
-            found.append(
+            errors.append(
                 SensorError(
                     name=f"torque_zero:{name}" if orders else f"sensor_offset:{name}",
                     title=f"offset of {name}",
                     kind="sensor",
-                    values=own * mean if orders else own,
+                    values=of_channel * mean if orders else of_channel,
                     unit=UNITS[channel.quantity],
-                    spread=one.offset,
+                    spread=uncertainty.offset,
                 )
             )
-        if one.scale > 0.0:
-            found.append(
+        if uncertainty.scale > 0.0:
+            errors.append(
                 SensorError(
                     name=f"sensor_scale:{name}",
                     title=f"scale error of {name}",
                     kind="sensor",
-                    values=own * (read if channel.quantity != "temperature" else above),
+                    values=of_channel * (read if channel.quantity != "temperature" else above),
                     unit="",
-                    spread=one.scale,
+                    spread=uncertainty.scale,
                 )
             )
     return (
-        *found,
+        *errors,
         *_angle_zero(library, read),
         *_lags(library, channels, read),
         *_centrifugal(library, channels),
@@ -131,18 +131,18 @@ def sensor_errors(
 
 def _of_gauge(library: Library, name: str, stated: Stated) -> list[SensorError]:
     """Gauge factor on all numbers of a gauge; zero and thermal output on the strain of the unloaded tooth alone."""
-    own = np.array([feature.channel == name for feature in library.features], dtype=np.float64)
-    unloaded = own * _unloaded(library)
-    found = []
+    of_channel = np.array([feature.channel == name for feature in library.features], dtype=np.float64)
+    unloaded = of_channel * _unloaded(library)
+    errors = []
     if stated.scale > 0.0:
-        found.append(
+        errors.append(
             SensorError(
                 name=f"gauge_factor:{name}", title=f"gauge factor of {name}", kind="sensor",
-                values=own * library.base, unit="", spread=stated.scale,
+                values=of_channel * library.base, unit="", spread=stated.scale,
             )
         )  # fmt: skip
     if stated.offset > 0.0 and unloaded.any():
-        found.append(
+        errors.append(
             SensorError(
                 name=f"gauge_zero:{name}", title=f"zero of {name}", kind="sensor", values=unloaded,
                 unit="m/m", spread=stated.offset,
@@ -150,13 +150,13 @@ def _of_gauge(library: Library, name: str, stated: Stated) -> list[SensorError]:
         )  # fmt: skip
     warm = unloaded * np.array([_warmer(library, feature.setting) for feature in library.features])
     if warm.any():
-        found.append(
+        errors.append(
             SensorError(
                 name=f"gauge_thermal_output:{name}", title=f"thermal output of {name}", kind="sensor",
                 values=warm, unit="1/K", spread=THERMAL_OUTPUT,
             )
         )  # fmt: skip
-    return found
+    return errors
 
 
 def _unloaded(library: Library) -> Array:
@@ -166,7 +166,7 @@ def _unloaded(library: Library) -> Array:
 
 def _warmer(library: Library, point: str) -> float:
     """Inlets of the oils at a point over 20 degC [K], which the gears follow; 0 where nothing is stated."""
-    setting = next((one for one in library.settings if one.name == point), None)
+    setting = next((setting for setting in library.settings if setting.name == point), None)
     inlets = () if setting is None else tuple(setting.inlet_temperature.values())
     return float(np.mean(inlets)) - REFERENCE_TEMPERATURE if inlets else 0.0
 
@@ -175,10 +175,10 @@ def _centrifugal(library: Library, channels: Mapping[str, Channel]) -> list[Sens
     """Strain by rotation of all gauges of a gear, over that at the fastest point."""
     speeds = {setting.name: setting.speed for setting in library.settings}
     fastest = max(speeds.values(), default=1.0)
-    squares = np.array([(speeds.get(one.setting, 0.0) / fastest) ** 2 for one in library.features])
-    places = [channels[one.channel].place for one in library.features]
-    quantities = [channels[one.channel].quantity for one in library.features]
-    found = []
+    squares = np.array([(speeds.get(feature.setting, 0.0) / fastest) ** 2 for feature in library.features])
+    places = [channels[feature.channel].place for feature in library.features]
+    quantities = [channels[feature.channel].quantity for feature in library.features]
+    errors = []
     for gear in dict.fromkeys(
         place.rpartition(".")[0] for place, q in zip(places, quantities) if q == "root_strain"
     ):
@@ -187,13 +187,13 @@ def _centrifugal(library: Library, channels: Mapping[str, Channel]) -> list[Sens
         ]
         values = np.array(on_gear, dtype=np.float64) * squares * _unloaded(library)
         if values.any():
-            found.append(
+            errors.append(
                 SensorError(
                     name=f"gauge_centrifugal:{gear}", title=f"centrifugal strain of the gauges of {gear}",
                     kind="sensor", values=values, unit="m/m", spread=CENTRIFUGAL,
                 )
             )  # fmt: skip
-    return found
+    return errors
 
 
 ANGLE_ZERO = 2e-3
@@ -249,23 +249,23 @@ def _lags(library: Library, channels: Mapping[str, Channel], read: Array) -> lis
     speeds = {setting.name: setting.speed for setting in library.settings}
     speed = np.array([speeds.get(feature.setting, 0.0) for feature in library.features])
     behind = -turning.order_of(len(read)) * speed * turning.ahead(read)
-    found = []
+    errors = []
     for name, channel in channels.items():
-        own = np.array([feature.channel == name for feature in library.features], dtype=np.float64)
-        if channel.quantity != "torque" or not (own * behind).any():
+        of_channel = np.array([feature.channel == name for feature in library.features], dtype=np.float64)
+        if channel.quantity != "torque" or not (of_channel * behind).any():
             continue
-        found.append(
+        errors.append(
             SensorError(
                 name=f"torque_lag:{name}",
                 title=f"lag of the torque cell {name}",
                 kind="sensor",
-                values=own * behind,
+                values=of_channel * behind,
                 unit="s",
                 spread=LAG,
                 times=LARGEST_LAG / LAG,
             )
         )
-    return found
+    return errors
 
 
 def input_errors(
@@ -275,47 +275,47 @@ def input_errors(
 
     stated : (kind, place) of a setting -> its systematic uncertainties
     """
-    found = []
-    for (kind, place), one in stated.items():
+    errors = []
+    for (kind, place), uncertainty in stated.items():
         keys = [key for key in library.inputs if key[:2] == (kind, place)]
         if not keys:
             continue
         by_name = {setting.name: setting for setting in settings}
         offset = np.sum([library.inputs[key] for key in keys], axis=0)
         scale = np.sum([library.inputs[key] * value_of(by_name[key[2]], kind, place) for key in keys], axis=0)
-        at = f"{kind} of {place}".removesuffix(" of ")
-        if one.offset > 0.0:
-            found.append(
+        label = f"{kind} of {place}".removesuffix(" of ")
+        if uncertainty.offset > 0.0:
+            errors.append(
                 SensorError(
                     name=_input_name(kind, place, "offset"),
-                    title=f"offset of {at}",
+                    title=f"offset of {label}",
                     kind="input",
                     values=offset,
                     unit="K" if "temperature" in kind else "SI",
-                    spread=one.offset,
+                    spread=uncertainty.offset,
                 )
             )
-        if one.scale > 0.0:
-            found.append(
+        if uncertainty.scale > 0.0:
+            errors.append(
                 SensorError(
                     name=_input_name(kind, place, "scale"),
-                    title=f"scale error of {at}",
+                    title=f"scale error of {label}",
                     kind="input",
                     values=scale,
                     unit="",
-                    spread=one.scale,
+                    spread=uncertainty.scale,
                 )
             )
-    return tuple(found)
+    return tuple(errors)
 
 
-def _input_name(kind: str, place: str, what: str) -> str:
+def _input_name(kind: str, place: str, error: str) -> str:
     """Names as the catalogue has them."""
     if kind == "flow":
-        return f"flow_{what}:{place}"
+        return f"flow_{error}:{place}"
     if kind == "inlet_temperature":
-        return f"inlet_{what}:{place}"
-    return "ambient" if kind == "ambient_temperature" else f"{kind}_{what}"
+        return f"inlet_{error}:{place}"
+    return "ambient" if kind == "ambient_temperature" else f"{kind}_{error}"
 
 
 def setting_scatter(library: Library, noise: Mapping[str, Mapping[tuple[str, str], float]]) -> Array:

@@ -42,15 +42,15 @@ def calibration_document(calibrated: RigCalibration) -> dict[str, Any]:
         "sets": [
             {
                 "name": name,
-                "title": one.title,
-                "path": str(one.folder),
-                "hash": one.hash,
-                "points": len(one.points),
-                "channels": list(one.channels),
+                "title": measurement.title,
+                "path": str(measurement.folder),
+                "hash": measurement.hash,
+                "points": len(measurement.points),
+                "channels": list(measurement.channels),
             }
-            for name, one in zip(calibrated.names, calibrated.measurements, strict=True)
+            for name, measurement in zip(calibrated.names, calibrated.measurements, strict=True)
         ],
-        "values": [_value(one) for one in calibrated.fit.estimates],
+        "values": [_value(estimate) for estimate in calibrated.fit.estimates],
         "leave_one_out": [
             {
                 "set": row.name,
@@ -74,14 +74,14 @@ def calibration_document(calibrated: RigCalibration) -> dict[str, Any]:
     return plain
 
 
-def _value(one: Estimate) -> dict[str, Any]:
+def _value(estimate: Estimate) -> dict[str, Any]:
     return {
-        "name": one.name,
-        "kind": one.kind,
-        "value": one.used,
-        "fitted": one.fitted,
-        "spread_factor": exp(one.spread),
-        "shipped": one.shipped,
+        "name": estimate.name,
+        "kind": estimate.kind,
+        "value": estimate.used,
+        "fitted": estimate.fitted,
+        "spread_factor": exp(estimate.spread),
+        "shipped": estimate.shipped,
     }
 
 
@@ -147,7 +147,7 @@ def load_rig_calibration(path: Path, case: Case, shipped: Calibration = DEFAULT)
             path=str(file),
             hash=hashlib.sha256(content).hexdigest(),
             case_hash=str(document["case"]["hash"]),
-            sets=tuple(str(one["title"]) for one in document["sets"]),
+            sets=tuple(str(healthy_set["title"]) for healthy_set in document["sets"]),
             odd=tuple(str(name) for name in document["unlike_the_others"]),
         )
     except (KeyError, TypeError) as error:

@@ -78,51 +78,60 @@ def estimate(
     """
     if len(sets) < FEWEST:
         raise ValueError(f"healthy sets = {len(sets)}, must be at least {FEWEST}")
-    sets = [_without_outliers(one, shipped) for one in sets]
+    sets = [_without_outliers(residuals, shipped) for residuals in sets]
     errors = _model_error(sets, shipped, start or shipped.amplitudes)
     amplitudes = shipped.amplitudes.with_values(_used(errors))
     drifts = _drift(changes_of(sets, amplitudes), shipped.drift, len(sets))
     estimates = (*drifts, *errors)
     return RigFit(
-        calibration=with_values(shipped, {one.name: one.used for one in estimates}), estimates=estimates
+        calibration=with_values(shipped, {value.name: value.used for value in estimates}), estimates=estimates
     )
 
 
-def _without_outliers(one: ResidualProblem, shipped: Calibration) -> ResidualProblem:
+def _without_outliers(residuals: ResidualProblem, shipped: Calibration) -> ResidualProblem:
     """A set without single readings that its others contradict: a slip is no drift."""
-    space = plain(one, shipped.amplitudes, shipped.inflation)
-    gone = {outlier.place for outlier in outliers_of(one, space)}
-    return one.rows([row for row in range(len(one.features)) if row not in gone]) if gone else one
+    space = plain(residuals, shipped.amplitudes, shipped.inflation)
+    gone = {outlier.place for outlier in outliers_of(residuals, space)}
+    return (
+        residuals.rows([row for row in range(len(residuals.features)) if row not in gone])
+        if gone
+        else residuals
+    )
 
 
 def changes_of(sets: Sequence[ResidualProblem], amplitudes: Amplitudes) -> list[Change]:
     """Every set given every other one."""
-    return [Change.of(one, other, amplitudes) for one in sets for other in sets if other is not one]
+    return [
+        Change.of(residuals, baseline, amplitudes)
+        for residuals in sets
+        for baseline in sets
+        if baseline is not residuals
+    ]
 
 
 def _model_error(sets: Sequence[ResidualProblem], shipped: Calibration, start: Amplitudes) -> list[Estimate]:
-    groups = [_one_nth(one, shipped, len(sets)) for one in sets]
-    found = fit_amplitudes(groups, start, OF_THE_MEASUREMENT, shipped.amplitudes)
+    groups = [_one_nth(residuals, shipped, len(sets)) for residuals in sets]
+    fit = fit_amplitudes(groups, start, OF_THE_MEASUREMENT, shipped.amplitudes)
     before = shipped.amplitudes.as_dict()
     return [
         _estimate(f"amplitudes.{name}", "channel error" if name in OF_CHANNELS else "model error",
-                  before[name], found.values[name], found.spreads[name])
+                  before[name], fit.values[name], fit.spreads[name])
         for name in before
-        if name in found.values
+        if name in fit.values
     ]  # fmt: skip
 
 
-def _one_nth(one: ResidualProblem, shipped: Calibration, count: int) -> Group:
+def _one_nth(residuals: ResidualProblem, shipped: Calibration, count: int) -> Group:
     """A set against the model with a weight of one over their number, the shipped inflation included."""
-    group = group_of([one], shipped.amplitudes, shipped.inflation)
-    return replace(group, noise=group.noise + one.inflated(shipped.inflation), weight=1.0 / count)
+    group = group_of([residuals], shipped.amplitudes, shipped.inflation)
+    return replace(group, noise=group.noise + residuals.inflated(shipped.inflation), weight=1.0 / count)
 
 
 def _drift(changes: Sequence[Change], shipped: Drift, sets: int) -> list[Estimate]:
-    found = fit_with_channels(changes, shipped, 1.0 / sets)
+    fit = fit_with_channels(changes, shipped, 1.0 / sets)
     estimates = []
-    for name, fitted in found.values.items():
-        spread = spread_of_sets(found.spreads[name], sets)
+    for name, fitted in fit.values.items():
+        spread = spread_of_sets(fit.spreads[name], sets)
         if name.startswith(CHANNEL):
             key = f"channels.{name.removeprefix(CHANNEL)}"
             used = fitted * float(np.exp(spread))
@@ -149,7 +158,7 @@ def _estimate(name: str, kind: Kind, shipped: float, fitted: float, spread: floa
 
 
 def _used(estimates: Sequence[Estimate]) -> dict[str, float]:
-    return {one.name.partition(".")[2]: one.used for one in estimates}
+    return {value.name.partition(".")[2]: value.used for value in estimates}
 
 
 def with_values(shipped: Calibration, values: Mapping[str, float]) -> Calibration:
@@ -188,8 +197,8 @@ def fit_with_channels(changes: Sequence[Change], drift: Drift, weight: float) ->
     everything. Each is fitted together with all other scales and kept where that explains the changes better.
     """
     best = fit_drift(changes, drift, weight)
-    while (found := most_shifted(changes, drift)) is not None:
-        name, size = found
+    while (shift := most_shifted(changes, drift)) is not None:
+        name, size = shift
         drift = replace(drift, channels={**drift.channels, name: size})
         more = fit_drift(changes, drift, weight)
         if more.misfit > best.misfit - WORTH_A_SHIFT:

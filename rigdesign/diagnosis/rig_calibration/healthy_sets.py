@@ -78,15 +78,15 @@ def leave_one_out(
     whole : the fit to all sets, from whose amplitudes the searches start
     """
     rows = []
-    for one in sets:
-        others = [other for other in sets if other is not one]
-        say(f"set {one.name} with the others")
+    for healthy_set in sets:
+        others = [other for other in sets if other is not healthy_set]
+        say(f"set {healthy_set.name} with the others")
         calibration, by = shipped, tuple[str, ...]()
         if len(others) >= FEWEST:
             start = whole.calibration.amplitudes
             calibration = estimate([other.residuals for other in others], shipped, start).calibration
             by = tuple(other.name for other in others)
-        rows += [_left_out(one, other, calibration, by, shipped) for other in (None, *others)]
+        rows += [_left_out(healthy_set, other, calibration, by, shipped) for other in (None, *others)]
     return tuple(rows)
 
 
@@ -97,38 +97,38 @@ def odd_sets(rows: Sequence[LeftOut]) -> tuple[str, ...]:
     """
     odd = []
     for name in dict.fromkeys(row.name for row in rows):
-        own = [row for row in rows if row.name == name and row.baseline is not None]
-        if sum(row.alarm for row in own) > len(own) / 2.0:
+        of_set = [row for row in rows if row.name == name and row.baseline is not None]
+        if sum(row.alarm for row in of_set) > len(of_set) / 2.0:
             odd.append(name)
     return tuple(odd)
 
 
 def _left_out(
-    one: HealthySet,
+    healthy_set: HealthySet,
     other: HealthySet | None,
     calibration: Calibration,
     by: tuple[str, ...],
     shipped: Calibration,
 ) -> LeftOut:
     problem = Problem(
-        residuals=one.residuals,
+        residuals=healthy_set.residuals,
         baseline=None if other is None else other.residuals,
-        seed=one.seed,
-        repeated=one.repeated,
+        seed=healthy_set.seed,
+        repeated=healthy_set.repeated,
     )
-    found = diagnose(problem, calibration)
-    square = found.whitened_square
-    before = square if calibration is shipped else _with(problem, found.kept, shipped)
+    diagnosis = diagnose(problem, calibration)
+    square = diagnosis.whitened_square
+    before = square if calibration is shipped else _with(problem, diagnosis.kept, shipped)
     return LeftOut(
-        name=one.name,
+        name=healthy_set.name,
         baseline=None if other is None else other.name,
         calibrated_by=by,
-        verdict=found.decision.verdict,
-        named=found.decision.named,
-        reason=found.decision.reason,
-        numbers=len(found.kept),
-        chi_square=square / len(found.kept),
-        before=before / len(found.kept),
+        verdict=diagnosis.decision.verdict,
+        named=diagnosis.decision.named,
+        reason=diagnosis.decision.reason,
+        numbers=len(diagnosis.kept),
+        chi_square=square / len(diagnosis.kept),
+        before=before / len(diagnosis.kept),
     )
 
 
@@ -187,16 +187,16 @@ def calibrate_rig(
     measurements = tuple(load_measurement(folder, case) for folder in folders)
     names = _names(measurements)
     _check_shared(measurements, names)
-    read = [entry.channel for one in measurements for entry in one.channels.values()]
+    read = [entry.channel for measurement in measurements for entry in measurement.channels.values()]
     effects = effects_of(case, channels=read)
     sets = []
     with solver_errors(case):
-        for name, one in zip(names, measurements, strict=True):
-            data, residuals = read_residuals(case, one, effects, say)
+        for name, measurement in zip(names, measurements, strict=True):
+            data, residuals = read_residuals(case, measurement, effects, say)
             repeated = data.strength == "proven"
-            sets.append(HealthySet(name=name, residuals=residuals, seed=one.hash, repeated=repeated))
+            sets.append(HealthySet(name=name, residuals=residuals, seed=measurement.hash, repeated=repeated))
         say("fitting drift and model error")
-        fit = estimate([one.residuals for one in sets], shipped)
+        fit = estimate([healthy_set.residuals for healthy_set in sets], shipped)
         left_out = leave_one_out(sets, shipped, fit, say)
     return RigCalibration(case=case, measurements=measurements, names=names, fit=fit, left_out=left_out)
 
@@ -204,13 +204,14 @@ def calibrate_rig(
 def _names(measurements: Sequence[MeasurementSet]) -> tuple[str, ...]:
     """Folder of each set, with the folder above where two are called the same."""
     hashes: dict[str, MeasurementSet] = {}
-    for one in measurements:
-        if one.hash in hashes:
+    for measurement in measurements:
+        if measurement.hash in hashes:
             raise UsageError(
-                f"{one.folder}: the same readings as {hashes[one.hash].folder}; give each healthy set once"
+                f"{measurement.folder}: the same readings as {hashes[measurement.hash].folder}; "
+                "give each healthy set once"
             )
-        hashes[one.hash] = one
-    folders = [one.folder.resolve() for one in measurements]
+        hashes[measurement.hash] = measurement
+    folders = [measurement.folder.resolve() for measurement in measurements]
     short = [folder.name for folder in folders]
     return tuple(
         name if short.count(name) == 1 else f"{folder.parent.name}/{name}"
@@ -220,9 +221,9 @@ def _names(measurements: Sequence[MeasurementSet]) -> tuple[str, ...]:
 
 def _check_shared(measurements: Sequence[MeasurementSet], names: Sequence[str]) -> None:
     """Sets without common points say nothing of a drift."""
-    for place, one in enumerate(measurements):
+    for place, measurement in enumerate(measurements):
         for other, name in zip(measurements[:place], names[:place], strict=True):
-            again = len(met_again(one.settings, other.settings)) - 1
+            again = len(met_again(measurement.settings, other.settings)) - 1
             if again < LEAST_AGAIN:
                 raise MeasurementError(
                     f"operating points that {names[place]} and {name} share: {again}, at least {LEAST_AGAIN} are "

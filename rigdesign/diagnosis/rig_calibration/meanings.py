@@ -14,7 +14,7 @@ from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 def meanings() -> Mapping[str, str]:
     """Name -> meaning of what a rig's own sets may replace: ``amplitudes.link``, ``drift.shaft``."""
     fields = (("amplitudes", Amplitudes), ("drift", Drift))
-    return {f"{group}.{name}": text for group, record in fields for name, text in field_texts(record).items()}
+    return {f"{group}.{name}": text for group, cls in fields for name, text in field_texts(cls).items()}
 
 
 @cache
@@ -27,18 +27,20 @@ def module_tree(name: str) -> ast.Module:
 
 def assigned_texts(body: Sequence[ast.stmt]) -> dict[str, str]:
     """Names assigned in a block -> the text below, empty where there is none."""
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     for place, statement in enumerate(body):
         match statement:
             case ast.Assign(targets=targets):
-                names = [part.id for one in targets for part in ast.walk(one) if isinstance(part, ast.Name)]
+                names = [
+                    part.id for target in targets for part in ast.walk(target) if isinstance(part, ast.Name)
+                ]
             case ast.AnnAssign(target=ast.Name(id=name)):
                 names = [name]
             case _:
                 continue
         below = body[place + 1] if place + 1 < len(body) else None
-        found |= dict.fromkeys(names, _text(below))
-    return found
+        texts |= dict.fromkeys(names, _text(below))
+    return texts
 
 
 def _text(statement: ast.stmt | None) -> str:
@@ -49,29 +51,31 @@ def _text(statement: ast.stmt | None) -> str:
     return ""
 
 
-def field_texts(record: type) -> Mapping[str, str]:
+def field_texts(cls: type) -> Mapping[str, str]:
     """Field of a record -> its meaning, from the text below it or from the list in the text of the record."""
     [block] = [
         node
-        for node in module_tree(record.__module__).body
-        if isinstance(node, ast.ClassDef) and node.name == record.__name__
+        for node in module_tree(cls.__module__).body
+        if isinstance(node, ast.ClassDef) and node.name == cls.__name__
     ]
     listed = _listed(ast.get_docstring(block) or "")
-    own = {
+    annotated = {
         node.target.id
         for node in block.body
         if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name)
     }
     return {
-        name: text or listed.get(name, "") for name, text in assigned_texts(block.body).items() if name in own
+        name: text or listed.get(name, "")
+        for name, text in assigned_texts(block.body).items()
+        if name in annotated
     }
 
 
 def _listed(docstring: str) -> dict[str, str]:
     """Names -> texts of a list ``name, name : text; name : text``."""
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     for entry in " ".join(docstring.partition("\n\n")[2].split()).split("; "):
         names, colon, text = entry.partition(" : ")
         if colon:
-            found |= dict.fromkeys((one.strip() for one in names.split(",")), text)
-    return found
+            texts |= dict.fromkeys((name.strip() for name in names.split(",")), text)
+    return texts

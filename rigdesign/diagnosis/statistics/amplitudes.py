@@ -133,13 +133,13 @@ def fit(
         value = 0.5 * float(np.sum(((logs - centre) / PRIOR) ** 2))
         slope = (logs - centre) / PRIOR**2
         for group in groups:
-            one, by_amplitude = group_misfit(group, amplitudes, names)
-            value += one
+            of_group, by_amplitude = group_misfit(group, amplitudes, names)
+            value += of_group
             slope = slope + by_amplitude
         return value, slope
 
     reaches = [reach.get(name, FARTHEST) for name in names]
-    found = minimize(
+    minimum = minimize(
         misfit,
         np.log([start[name] for name in names]),
         jac=True,
@@ -148,9 +148,9 @@ def fit(
         options={"maxiter": 60},
     )
     return Fit(
-        values=dict(zip(names, np.exp(found.x).tolist(), strict=True)),
-        spreads=dict(zip(names, _spreads(lambda logs: misfit(logs)[1], found.x), strict=True)),
-        misfit=float(found.fun),
+        values=dict(zip(names, np.exp(minimum.x).tolist(), strict=True)),
+        spreads=dict(zip(names, _spreads(lambda logs: misfit(logs)[1], minimum.x), strict=True)),
+        misfit=float(minimum.fun),
     )
 
 
@@ -170,10 +170,12 @@ def group_misfit(group: Group, amplitudes: Mapping[str, float], names: Sequence[
     return group.weight * value, group.weight * np.array(slopes)
 
 
-def _spreads(slope: Callable[[Array], Array], at: Array) -> list[float]:
+def _spreads(slope: Callable[[Array], Array], logs: Array) -> list[float]:
     """Standard deviation of each logarithm from the curvature; never wider than the prior."""
-    steps = CURVATURE_STEP * np.eye(len(at))
-    curvature = np.array([(slope(at + step) - slope(at - step)) / (2.0 * CURVATURE_STEP) for step in steps])
+    steps = CURVATURE_STEP * np.eye(len(logs))
+    curvature = np.array(
+        [(slope(logs + step) - slope(logs - step)) / (2.0 * CURVATURE_STEP) for step in steps]
+    )
     values, vectors = np.linalg.eigh(0.5 * (curvature + curvature.T))
     inverse = (vectors / np.maximum(values, PRIOR**-2)) @ vectors.T
-    return [float(one) for one in np.sqrt(np.diagonal(inverse))]
+    return [float(variance) for variance in np.sqrt(np.diagonal(inverse))]

@@ -47,12 +47,12 @@ def numbered(names: Sequence[Hashable]) -> NDArray[np.intp]:
 
 def series_numbers(features: Sequence[Feature]) -> NDArray[np.intp]:
     """(n,) number of the series of every feature, one channel and one order, from zero in the order they appear."""
-    return numbered([(one.channel, one.order, one.part) for one in features])
+    return numbered([(feature.channel, feature.order, feature.part) for feature in features])
 
 
 def order_numbers(features: Sequence[Feature]) -> NDArray[np.intp]:
     """(n,) number of the order that every feature is a part of, at its channel and point, in the order they appear."""
-    return numbered([(one.channel, one.setting, one.order) for one in features])
+    return numbered([(feature.channel, feature.setting, feature.order) for feature in features])
 
 
 def amplitudes_of(features: Sequence[Feature], values: Array) -> Array:
@@ -84,12 +84,12 @@ class Turning:
     def of(cls, features: Sequence[Feature]) -> "Turning":
         """Of features; means, quantities without orders and parts that stand alone do not turn."""
         place = {feature: row for row, feature in enumerate(features) if feature.part == "imaginary"}
-        found = [
+        rows = [
             (row, place.get(replace(feature, part="imaginary")), feature.order)
             for row, feature in enumerate(features)
             if feature.part == "real"
         ]
-        pairs = [(real, imaginary, order) for real, imaginary, order in found if imaginary is not None]
+        pairs = [(real, imaginary, order) for real, imaginary, order in rows if imaginary is not None]
         return cls(
             real=np.array([pair[0] for pair in pairs], dtype=np.intp),
             imaginary=np.array([pair[1] for pair in pairs], dtype=np.intp),
@@ -102,23 +102,23 @@ class Turning:
         teeth_a_turn : of the reference gear; each tooth that passes turns order k by 2 pi k over them
         """
         angle = -2.0 * pi * self.orders * teeth / teeth_a_turn
-        found = answers.copy()
+        turned = answers.copy()
         real, imaginary = answers[:, self.real], answers[:, self.imaginary]
-        found[:, self.real] = np.cos(angle) * real - np.sin(angle) * imaginary
-        found[:, self.imaginary] = np.sin(angle) * real + np.cos(angle) * imaginary
-        return np.asarray(found)
+        turned[:, self.real] = np.cos(angle) * real - np.sin(angle) * imaginary
+        turned[:, self.imaginary] = np.sin(angle) * real + np.cos(angle) * imaginary
+        return np.asarray(turned)
 
     def ahead(self, values: Array) -> Array:
         """(n,) every complex order of values (n,) turned by a right angle, times i; zero for what does not turn."""
-        found = np.zeros(len(values))
-        found[self.real], found[self.imaginary] = -values[self.imaginary], values[self.real]
-        return found
+        ahead = np.zeros(len(values))
+        ahead[self.real], ahead[self.imaginary] = -values[self.imaginary], values[self.real]
+        return ahead
 
     def order_of(self, count: int) -> Array:
         """(count,) order of every number that turns, zero for the others."""
-        found = np.zeros(count)
-        found[self.real] = found[self.imaginary] = self.orders
-        return found
+        orders = np.zeros(count)
+        orders[self.real] = orders[self.imaginary] = self.orders
+        return orders
 
 
 # How far each number of an order may be from the answer of a right cause, by itself.
@@ -151,20 +151,20 @@ class ModelError:
         return cls(
             share=share,
             mesh=mesh,
-            values=np.where([one.order != 0.0 for one in features], values, 0.0),
+            values=np.where([feature.order != 0.0 for feature in features], values, 0.0),
             orders=order_numbers(features),
-            places=numbered([(one.channel, one.setting) for one in features]),
+            places=numbered([(feature.channel, feature.setting) for feature in features]),
         )
 
     def at(self, answer: Array, circuit: bool) -> Array:
         """(n,) standard deviations of an answer (n,); ``circuit``: whether its cause changes the circuit."""
-        own = self.share * together(answer, self.orders)
+        spread = self.share * together(answer, self.orders)
         if not circuit:
-            return np.asarray(own)
-        changed, before = (together(self.mesh * one, self.places) for one in (answer, self.values))
+            return np.asarray(spread)
+        changed, before = (together(self.mesh * numbers, self.places) for numbers in (answer, self.values))
         passed_on = np.minimum(changed / np.maximum(before, 1e-150), 1.0)
         excited = np.where(self.mesh, 0.0, together(self.values, self.orders))
-        return np.asarray(np.hypot(own, passed_on * excited))
+        return np.asarray(np.hypot(spread, passed_on * excited))
 
 
 # Levels: how large each number is against which an error of the model is relative.
@@ -213,21 +213,21 @@ def reference_scale(
 ) -> Array:
     """(n,) level of every number, positive."""
     above = np.abs(excess(features, base, channels, settings))
-    found = above.copy()
+    scale = above.copy()
     for name in dict.fromkeys(feature.channel for feature in features):
         rows = [i for i, feature in enumerate(features) if feature.channel == name]
         if channels[name].quantity in ORDER_QUANTITIES:
-            _order_levels(features, rows, above, found, mesh_orders)
+            _order_levels(features, rows, above, scale, mesh_orders)
         else:
-            found[rows] = np.maximum(above[rows], float(above[rows].mean()))
-    return np.maximum(found, 1e-12)
+            scale[rows] = np.maximum(above[rows], float(above[rows].mean()))
+    return np.maximum(scale, 1e-12)
 
 
 def _order_levels(
     features: Sequence[Feature],
     rows: Sequence[int],
     above: Array,
-    found: Array,
+    scale: Array,
     mesh_orders: frozenset[float],
 ) -> None:
     """Mesh orders over their own root mean square, the others over the strongest of those, else of all."""
@@ -235,12 +235,14 @@ def _order_levels(
     for row in rows:
         by_order.setdefault(features[row].order, []).append(row)
     sizes = {
-        order: float(np.sqrt(2.0 * np.mean(above[own] ** 2))) for order, own in by_order.items() if order
+        order: float(np.sqrt(2.0 * np.mean(above[of_order] ** 2)))
+        for order, of_order in by_order.items()
+        if order
     }
     mesh = {order: size for order, size in sizes.items() if order in mesh_orders}
     strongest = max((mesh or sizes).values(), default=0.0)
-    for order, own in by_order.items():
+    for order, of_order in by_order.items():
         if order == 0.0:
-            found[own] = np.maximum(above[own], float(above[own].mean()))
+            scale[of_order] = np.maximum(above[of_order], float(above[of_order].mean()))
         else:
-            found[own] = mesh.get(order, strongest)
+            scale[of_order] = mesh.get(order, strongest)

@@ -120,11 +120,11 @@ class Whitened:
         matrix = self.covariance.matrix[np.ix_(keep, keep)]
         return Whitened.of(Covariance(base=matrix, columns=(), amplitudes={}), self.raw[np.array(keep)])
 
-    def freed(self, own: Sequence[str]) -> Array:
+    def freed(self, effects: Sequence[str]) -> Array:
         """(n,) the residual while these effects are tested."""
         return np.asarray(
             self.residual
-            + sum((self.nonlinear_parts[one] for one in own if one in self.nonlinear_parts), 0.0)
+            + sum((self.nonlinear_parts[effect] for effect in effects if effect in self.nonlinear_parts), 0.0)
         )
 
     @cached_property
@@ -208,23 +208,23 @@ def reject(
     series : (n,) what each reading is one of; where several of a series stand out they are a trace and no outliers
     most : share of the readings that may go; if more would have to, nothing is an outlier and none is rejected
     """
-    found = _standing_out(matrix, residual, limit, most)
-    count = Counter(series[one.place] for one in found)
-    return tuple(one for one in found if count[series[one.place]] == 1)
+    outliers = _standing_out(matrix, residual, limit, most)
+    count = Counter(series[outlier.place] for outlier in outliers)
+    return tuple(outlier for outlier in outliers if count[series[outlier.place]] == 1)
 
 
 def _standing_out(matrix: Array, residual: Array, limit: float, most: float) -> tuple[Outlier, ...]:
     kept = np.arange(len(residual))
     precision = inverse_of_factor(np.asarray(np.linalg.cholesky(matrix), dtype=np.float64))
-    found: list[Outlier] = []
+    outliers: list[Outlier] = []
     while True:
         deviations = precision @ residual[kept] / np.sqrt(np.diagonal(precision))
         worst = int(np.argmax(np.abs(deviations)))
         if abs(deviations[worst]) <= limit:
-            return tuple(found)
-        if len(found) + 1 > max(1.0, most * len(residual)):
+            return tuple(outliers)
+        if len(outliers) + 1 > max(1.0, most * len(residual)):
             return ()
-        found.append(Outlier(int(kept[worst]), float(deviations[worst])))
+        outliers.append(Outlier(int(kept[worst]), float(deviations[worst])))
         kept = np.delete(kept, worst)
         precision = _without(precision, worst)
 

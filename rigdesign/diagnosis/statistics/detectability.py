@@ -87,9 +87,9 @@ def _seen(space: Whitened, effect: Hypothesis) -> tuple[float, Array]:
     column = slope_of(effect)
     size = _detectable(release.product(column, column))
     if effect.curve is not None and np.isfinite(size):
-        at = float(np.clip(size, *effect.curve.bounds))
-        if at > 0.0:
-            column = effect.curve.at(np.array([at]))[0][:, None] / at
+        reached = float(np.clip(size, *effect.curve.bounds))
+        if reached > 0.0:
+            column = effect.curve.at(np.array([reached]))[0][:, None] / reached
             size = _detectable(release.product(column, column))
     return size, column
 
@@ -106,25 +106,25 @@ def _nearest(
     """For the columns of each effect the explanation most like them that claims something else."""
     if not effects:
         return []
-    alike = _alike(_bases(columns), _bases([slope_of(one) for one in everything]))
+    alike = _alike(_bases(columns), _bases([slope_of(hypothesis) for hypothesis in everything]))
     number: dict[tuple[str, ...], int] = {}
-    claims = np.array([number.setdefault(one.parts, len(number)) for one in everything])
-    found = []
+    claims = np.array([number.setdefault(hypothesis.parts, len(number)) for hypothesis in everything])
+    nearest = []
     for effect, row in zip(effects, alike, strict=True):
         others = np.where(claims == number.get(effect.parts, -1), -1.0, row)
         best = int(np.argmax(others))
-        found.append((everything[best].name, max(float(others[best]), 0.0)))
-    return found
+        nearest.append((everything[best].name, max(float(others[best]), 0.0)))
+    return nearest
 
 
 def _bases(columns: Sequence[Array]) -> Array:
     """(n, 2 m) orthonormal bases of what each (n, 1 or 2) columns span; zeros for a second that is not there."""
     bases = np.zeros((len(columns[0]) if columns else 0, 2 * len(columns)))
-    for place, own in enumerate(columns):
-        if own.shape[1] == 1:
-            bases[:, 2 * place] = own[:, 0] / max(float(np.linalg.norm(own)), 1e-300)
+    for place, span in enumerate(columns):
+        if span.shape[1] == 1:
+            bases[:, 2 * place] = span[:, 0] / max(float(np.linalg.norm(span)), 1e-300)
         else:
-            bases[:, 2 * place : 2 * place + 2] = np.linalg.qr(own)[0]
+            bases[:, 2 * place : 2 * place + 2] = np.linalg.qr(span)[0]
     return bases
 
 
@@ -142,7 +142,7 @@ def aliases(space: Whitened, effects: Sequence[Hypothesis]) -> list[tuple[str, s
 
     Pairs that are alike to rounding stand in the order of the effects.
     """
-    bases = _bases([slope_of(one) for one in effects])
+    bases = _bases([slope_of(effect) for effect in effects])
     alike = np.triu(_alike(bases, bases), 1)
     pairs = [
         (effects[first].name, effects[second].name, float(alike[first, second]))
@@ -203,7 +203,7 @@ class ResidualMetric:
         """
         order = np.argsort(coordinates)
         places, runs = coordinates[order], answers[order]
-        found_all: list[RequiredSize] = []
+        candidates: list[RequiredSize] = []
         for k in range(len(places) - 1):
             low, high = places[k], places[k + 1]
             slope = (runs[k + 1] - runs[k]) / (high - low)
@@ -217,11 +217,11 @@ class ResidualMetric:
             rest = left - slope * (size - low)
             taken = self.square - float(rest @ cho_solve(self._factor, rest))
             beyond = not places[0] <= size <= places[-1]
-            found = self._sized(np.array([size]), taken, bound, extrapolated=beyond)
-            found_all.append(found)
-        most = max((one.share for one in found_all), default=0.0)
-        best = [one for one in found_all if one.share > most - ALIKE]
-        return min(best, key=lambda one: one.reach, default=None)
+            candidate = self._sized(np.array([size]), taken, bound, extrapolated=beyond)
+            candidates.append(candidate)
+        most = max((required.share for required in candidates), default=0.0)
+        best = [required for required in candidates if required.share > most - ALIKE]
+        return min(best, key=lambda required: required.reach, default=None)
 
     def _sized(self, sizes: Array, taken: float, bound: float, *, extrapolated: bool) -> RequiredSize:
         return RequiredSize(
@@ -236,6 +236,6 @@ def straight(coordinates: Array, answers: Array, size: float) -> Array:
     """(n,) answer of runs at coordinates (m,), answers (m, n), at a size: straight between them and beyond."""
     order = np.argsort(coordinates)
     places, runs = coordinates[order], answers[order]
-    at = int(np.clip(np.searchsorted(places, size) - 1, 0, len(places) - 2))
-    share = (size - places[at]) / (places[at + 1] - places[at])
-    return np.asarray((1.0 - share) * runs[at] + share * runs[at + 1])
+    segment = int(np.clip(np.searchsorted(places, size) - 1, 0, len(places) - 2))
+    share = (size - places[segment]) / (places[segment + 1] - places[segment])
+    return np.asarray((1.0 - share) * runs[segment] + share * runs[segment + 1])

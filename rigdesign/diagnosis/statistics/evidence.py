@@ -182,9 +182,9 @@ class Evidence:
         return np.asarray(second if part == self.hypothesis.parts[-1] else self.answer - second)
 
 
-def release_of(space: Whitened, own: Sequence[str]) -> Release:
+def release_of(space: Whitened, effects: Sequence[str]) -> Release:
     """The space without the spreads of these effects."""
-    places = sorted({place for effect in own for place in space.covariance.own(effect)})
+    places = sorted({place for effect in effects for place in space.covariance.own(effect)})
     return Release.of(space.columns[:, places])
 
 
@@ -396,11 +396,11 @@ def evaluate_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidenc
     spreads of both are integrated over the same mixtures as alone.
     """
     name = f"{first.hypothesis.name}{JOIN}{second.hypothesis.name}"
-    own = (*first.hypothesis.own, *second.hypothesis.own)
-    release = release_of(space, own)
+    effects = (*first.hypothesis.own, *second.hypothesis.own)
+    release = release_of(space, effects)
     base = first.answer - first.columns @ np.array(first.coordinates)
     columns = np.hstack([first.columns, second.columns])
-    left = space.freed(own) - base
+    left = space.freed(effects) - base
     gram = release.product(columns, columns)
     load = release.product(columns, left)
     owner = np.repeat([0, 1], [first.columns.shape[1], second.columns.shape[1]])
@@ -408,8 +408,8 @@ def evaluate_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidenc
     shift = 0.5 * (space.chi_square - float(release.product(left, left)))
     spreads = (_PAIRS_OF_SPREADS * halves)[:, owner]
     limits = (
-        np.concatenate([one.hypothesis.bounds[0] for one in (first, second)]),
-        np.concatenate([one.hypothesis.bounds[1] for one in (first, second)]),
+        np.concatenate([explanation.hypothesis.bounds[0] for explanation in (first, second)]),
+        np.concatenate([explanation.hypothesis.bounds[1] for explanation in (first, second)]),
     )
     inverse = inverse_of(gram)
     best = best_within(gram, load, inverse @ load, limits)
@@ -420,7 +420,7 @@ def evaluate_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidenc
         family="pair",
         parts=(*first.hypothesis.parts, *second.hypothesis.parts),
         columns=columns,
-        own=own,
+        own=effects,
         limits=limits,
     )
     return Evidence(
@@ -442,7 +442,7 @@ def evaluate_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidenc
 # several.
 
 
-def support(space: Whitened, points: Sequence[str], one: Evidence, part: str) -> tuple[float, str]:
+def support(space: Whitened, points: Sequence[str], explanation: Evidence, part: str) -> tuple[float, str]:
     """Least fall of the whitened square by one part of an explanation when a single operating point is left out.
 
     points : (n,) operating point of each number, empty at rest; numbers at rest always stay
@@ -451,11 +451,11 @@ def support(space: Whitened, points: Sequence[str], one: Evidence, part: str) ->
     precision P the numbers of a point are left out by x'Py - (Px)_p' P_pp^-1 (Py)_p.
     """
     lower = space.covariance.lower
-    precision = _released(space, one.hypothesis.own)
-    own = lower @ one.share_of(part)
-    left = lower @ (space.freed(one.hypothesis.own) - one.answer) + own
-    seen, change = precision @ (left - 0.5 * own), precision @ own
-    whole = 2.0 * float(own @ seen)
+    precision = _released(space, explanation.hypothesis.own)
+    answer = lower @ explanation.share_of(part)
+    left = lower @ (space.freed(explanation.hypothesis.own) - explanation.answer) + answer
+    seen, change = precision @ (left - 0.5 * answer), precision @ answer
+    whole = 2.0 * float(answer @ seen)
     least, where = whole, ""
     for point in sorted(set(points) - {""}):
         rows = np.array([row for row, name in enumerate(points) if name == point])
@@ -466,9 +466,9 @@ def support(space: Whitened, points: Sequence[str], one: Evidence, part: str) ->
     return least, where
 
 
-def _released(space: Whitened, own: Sequence[str]) -> Array:
+def _released(space: Whitened, effects: Sequence[str]) -> Array:
     """(n, n) precision without the spreads of these effects."""
-    release = release_of(space, own)
+    release = release_of(space, effects)
     if not release.directions.shape[1]:
         return space.precision
     reached = np.linalg.solve(space.covariance.lower.T, release.directions)
@@ -517,7 +517,7 @@ class JointFit:
 
 def fit_together(
     space: Whitened,
-    found: Sequence[Evidence],
+    explanations: Sequence[Evidence],
     widths: Mapping[str, float],
     bounds: Sequence[Sequence[tuple[float, float]]],
 ) -> JointFit:
@@ -526,14 +526,17 @@ def fit_together(
     widths : family of an effect -> relative error of the model's answer to it, by which intervals become wider
     bounds : of every coordinate of every effect
     """
-    owns = [own for one in found for own in one.hypothesis.own]
-    release, residual = release_of(space, owns), space.freed(owns)
-    coordinates = [np.array(one.coordinates) for one in found]
+    effects = [effect for explanation in explanations for effect in explanation.hypothesis.own]
+    release, residual = release_of(space, effects), space.freed(effects)
+    coordinates = [np.array(explanation.coordinates) for explanation in explanations]
     for _ in range(20):
-        slopes = [_slope(one, size) for one, size in zip(found, coordinates, strict=True)]
+        slopes = [
+            _slope(explanation, size) for explanation, size in zip(explanations, coordinates, strict=True)
+        ]
         columns = np.hstack(slopes)
         left = residual - sum(
-            (_answer(one, size) for one, size in zip(found, coordinates, strict=True)), np.zeros(len(columns))
+            (_answer(explanation, size) for explanation, size in zip(explanations, coordinates, strict=True)),
+            np.zeros(len(columns)),
         )
         gram = release.product(columns, columns)
         step = np.linalg.lstsq(gram, release.product(columns, left), rcond=None)[0]
@@ -546,17 +549,17 @@ def fit_together(
     deviations = np.sqrt(np.maximum(np.diagonal(inverse), 0.0))
     sizes = []
     number = 0
-    for one, size, limits in zip(found, coordinates, bounds, strict=True):
-        kind = one.hypothesis.parts[0].split(":")[0]
+    for explanation, size, limits in zip(explanations, coordinates, bounds, strict=True):
+        kind = explanation.hypothesis.parts[0].split(":")[0]
         width = widths.get(kind, widths.get("", 0.25))
-        below, above = _misanswered(one, size, NORMAL_95 * width)
+        below, above = _misanswered(explanation, size, NORMAL_95 * width)
         for place, value in enumerate(size):
             low, high = limits[place]
             first = float(value - np.hypot(NORMAL_95 * deviations[number], below))
             last = float(value + np.hypot(NORMAL_95 * deviations[number], above))
             sizes.append(
                 Size(
-                    effect=one.hypothesis.name,
+                    effect=explanation.hypothesis.name,
                     number=place,
                     coordinate=float(value),
                     interval=(max(first, low), min(last, high)),
@@ -565,7 +568,7 @@ def fit_together(
             )
             number += 1
     answer = sum(
-        (_answer(one, size) for one, size in zip(found, coordinates, strict=True)),
+        (_answer(explanation, size) for explanation, size in zip(explanations, coordinates, strict=True)),
         np.zeros(len(space.residual)),
     )
     return JointFit(
@@ -575,12 +578,12 @@ def fit_together(
     )
 
 
-def _misanswered(one: Evidence, size: Array, share: float) -> tuple[float, float]:
+def _misanswered(explanation: Evidence, size: Array, share: float) -> tuple[float, float]:
     """How far below and above a coordinate the answer is smaller or larger by a share of itself.
 
     A proportional answer is off by that share of the size; where the answer saturates a size is known much worse.
     """
-    curve = one.hypothesis.curve
+    curve = explanation.hypothesis.curve
     whole = float(np.linalg.norm(size))
     if curve is None or whole == 0.0:
         return share * whole, share * whole
@@ -600,18 +603,18 @@ FINE = 401
 """Points at which a curve is searched for a larger or smaller answer."""
 
 
-def _slope(one: Evidence, size: Array) -> Array:
-    curve = one.hypothesis.curve
-    return one.columns if curve is None else curve.sensitivity(float(size[0]))[:, None]
+def _slope(explanation: Evidence, size: Array) -> Array:
+    curve = explanation.hypothesis.curve
+    return explanation.columns if curve is None else curve.sensitivity(float(size[0]))[:, None]
 
 
-def _answer(one: Evidence, size: Array) -> Array:
-    curve = one.hypothesis.curve
-    return np.asarray(one.columns @ size) if curve is None else curve.at(size)[0]
+def _answer(explanation: Evidence, size: Array) -> Array:
+    curve = explanation.hypothesis.curve
+    return np.asarray(explanation.columns @ size) if curve is None else curve.at(size)[0]
 
 
 def _clipped(values: Array, bounds: Sequence[Sequence[tuple[float, float]]]) -> Array:
-    limits = np.array([limit for own in bounds for limit in own])
+    limits = np.array([limit for pairs in bounds for limit in pairs])
     return np.clip(values, limits[:, 0], limits[:, 1])
 
 

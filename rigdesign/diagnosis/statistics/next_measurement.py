@@ -92,16 +92,18 @@ class Foreseen:
         gain = np.asarray(np.linalg.solve(known, matrix[:measured, measured:])).T
         return cls(
             left=matrix[measured:, measured:] - gain @ matrix[:measured, measured:],
-            values=tuple(one.answer[measured:] + gain @ (residual - one.answer[:measured]) for one in rivals),
-            free=tuple(_freedom(one, gain, measured) for one in rivals),
+            values=tuple(
+                rival.answer[measured:] + gain @ (residual - rival.answer[:measured]) for rival in rivals
+            ),
+            free=tuple(_freedom(rival, gain, measured) for rival in rivals),
         )
 
     def expected_evidence(self, rows: Sequence[int]) -> float:
         """Expected logarithm of the Bayes factor by some readings, of the two rivals distinguished least."""
-        at = np.array(rows, dtype=np.intp)
-        left = self.left[np.ix_(at, at)]
-        means = [values[at] for values in self.values]
-        spreads = [left + free[at] @ free[at].T for free in self.free]
+        readings = np.array(rows, dtype=np.intp)
+        left = self.left[np.ix_(readings, readings)]
+        means = [values[readings] for values in self.values]
+        spreads = [left + free[readings] @ free[readings].T for free in self.free]
         return min(
             _divergence(means, spreads, true, false) for true, false in permutations(range(len(means)), 2)
         )
@@ -114,16 +116,20 @@ def ranked(foreseen: Foreseen, proposals: Sequence[Proposal]) -> tuple[Ranked, .
     """
     if len(foreseen.values) < 2:
         return ()
-    found = []
+    ranking = []
     for proposal in proposals:
         least = foreseen.expected_evidence(proposal.rows)
-        found.append(
+        ranking.append(
             Ranked(title=proposal.title, expected_evidence=least, cost=proposal.cost, decides=least >= TELLS)
         )
     worth = {
-        one: (min(one.expected_evidence, TELLS) / one.cost, one.expected_evidence / one.cost) for one in found
+        measurement: (
+            min(measurement.expected_evidence, TELLS) / measurement.cost,
+            measurement.expected_evidence / measurement.cost,
+        )
+        for measurement in ranking
     }
-    return tuple(sorted(found, key=lambda one: worth[one], reverse=True))
+    return tuple(sorted(ranking, key=lambda measurement: worth[measurement], reverse=True))
 
 
 MOST_TOGETHER = 4
@@ -141,11 +147,14 @@ def smallest_set(foreseen: Foreseen, proposals: Sequence[Proposal]) -> SmallestS
     chosen: list[Proposal] = []
     reached = 0.0
     while reached < TELLS and len(chosen) < MOST_TOGETHER:
-        left = [one for one in proposals if one not in chosen]
+        left = [proposal for proposal in proposals if proposal not in chosen]
         if not left:
             return None
-        evidence = [foreseen.expected_evidence(_rows([*chosen, one])) for one in left]
-        worth = [(min(found, TELLS) - reached) / one.cost for one, found in zip(left, evidence, strict=True)]
+        evidence = [foreseen.expected_evidence(_rows([*chosen, proposal])) for proposal in left]
+        worth = [
+            (min(after, TELLS) - reached) / proposal.cost
+            for proposal, after in zip(left, evidence, strict=True)
+        ]
         best = int(np.argmax(worth))
         if worth[best] <= 0.0:
             return None
@@ -153,20 +162,20 @@ def smallest_set(foreseen: Foreseen, proposals: Sequence[Proposal]) -> SmallestS
         reached = evidence[best]
     if reached < TELLS:
         return None
-    for one in sorted(chosen, key=lambda item: -item.cost):
-        fewer = [other for other in chosen if other is not one]
+    for proposal in sorted(chosen, key=lambda item: -item.cost):
+        fewer = [other for other in chosen if other is not proposal]
         if fewer and foreseen.expected_evidence(_rows(fewer)) >= TELLS:
             chosen = fewer
     return SmallestSet(
-        titles=tuple(one.title for one in chosen),
+        titles=tuple(proposal.title for proposal in chosen),
         expected_evidence=foreseen.expected_evidence(_rows(chosen)),
-        cost=sum(one.cost for one in chosen),
+        cost=sum(proposal.cost for proposal in chosen),
         rows=_rows(chosen),
     )
 
 
 def _rows(proposals: Sequence[Proposal]) -> tuple[int, ...]:
-    return tuple(row for one in proposals for row in one.rows)
+    return tuple(row for proposal in proposals for row in proposal.rows)
 
 
 def _freedom(rival: Rival, gain: Array, measured: int) -> Array:

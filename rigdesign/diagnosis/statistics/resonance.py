@@ -68,16 +68,16 @@ class Resonances:
 
     @property
     def _orders(self) -> Array:
-        return np.array([one.order for one in self.features], dtype=np.float64)
+        return np.array([feature.order for feature in self.features], dtype=np.float64)
 
     def _windup(self, amplitude: Array) -> Array:
         """(n,) least amplitude over the points of each channel and order; zero where it was read at one point alone."""
         read: dict[tuple[str, float], dict[str, float]] = {}
-        for one, value in zip(self.features, amplitude.tolist(), strict=True):
+        for feature, value in zip(self.features, amplitude.tolist(), strict=True):
             if value > 0.0:
-                read.setdefault((one.channel, one.order), {})[one.setting] = value
+                read.setdefault((feature.channel, feature.order), {})[feature.setting] = value
         least = {series: min(values.values()) for series, values in read.items() if len(values) > 1}
-        return np.array([least.get((one.channel, one.order), 0.0) for one in self.features])
+        return np.array([least.get((feature.channel, feature.order), 0.0) for feature in self.features])
 
     def _factor_at(self, orders: Array, power: int = 0) -> Array:
         """(n,) relative change of these orders at the points of the numbers, times a power of their frequency over the
@@ -90,7 +90,9 @@ class Resonances:
     def _nearest(self, orders: Array) -> Array:
         """(n,) frequency over the natural frequency nearest to it; zero where no order is read."""
         speeds = {setting.name: setting.speed for setting in self.settings}
-        read = np.array([speeds.get(one.setting, 0.0) if one.order else 0.0 for one in self.features])
+        read = np.array(
+            [speeds.get(feature.setting, 0.0) if feature.order else 0.0 for feature in self.features]
+        )
         if not self.modes.size:
             return np.zeros(len(read))
         ratios = (orders * read)[:, None] / self.modes
@@ -129,9 +131,9 @@ class CloseModes:
         Two readings of one mode, whose frequency the model has once, are no pair.
         """
         places = np.flatnonzero(frequencies)
-        one, other = np.triu_indices(len(places), 1)
-        apart = frequencies[places[one]] != frequencies[places[other]]
-        first, second = places[one[apart]], places[other[apart]]
+        former, latter = np.triu_indices(len(places), 1)
+        apart = frequencies[places[former]] != frequencies[places[latter]]
+        first, second = places[former[apart]], places[latter[apart]]
         distance = np.abs(np.log(frequencies[first] / frequencies[second]))
         twice_the_angle = np.arctan2(2.0 * off, distance)
         return cls(
@@ -144,7 +146,7 @@ class CloseModes:
 
     def errors(self, answer: Array) -> tuple[Array, Array]:
         """What an answer (n,) may have at the first of each pair (m,) in place of the second (m,), in its own units."""
-        one, other = (self.frequencies[place] for place in (self.first, self.second))
-        share, another = answer[self.first] / one, answer[self.second] / other
+        frequency, beside = (self.frequencies[place] for place in (self.first, self.second))
+        share, another = answer[self.first] / frequency, answer[self.second] / beside
         moved = self.mixed * np.sqrt(np.abs(share * another)) + self.turned * np.abs(share - another)
-        return one * moved, -other * moved
+        return frequency * moved, -beside * moved

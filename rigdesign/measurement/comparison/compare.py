@@ -56,9 +56,9 @@ def unit_findings(data: Data, simulated: Array) -> Iterator[DataFinding]:
         if not firm:
             continue
         ratio = float(np.median(np.abs(data.values[firm] / simulated[firm])))
-        own = units.worth(kind, entry.unit)[0]
+        stated_worth = units.worth(kind, entry.unit)[0]
         for unit in KINDS[kind].units:
-            factor = own / units.worth(kind, unit)[0]
+            factor = stated_worth / units.worth(kind, unit)[0]
             if max(factor, 1.0 / factor) > UNLIKE and 1.0 / RATIO < ratio / factor < RATIO:
                 yield DataFinding(
                     id="unit", weight="suspect", channels=(name,),
@@ -76,12 +76,12 @@ def thousands_findings(data: Data, simulated: Array) -> Iterator[DataFinding]:
         if data.usable[i] and feature.order == 0.0 and simulated[i] != 0.0:
             rows.setdefault(feature.channel, []).append(i)
     for name in rows.keys() - told:
-        entry, own = data.channels[name], np.array(rows[name])
+        entry, of_channel = data.channels[name], np.array(rows[name])
         kind = CHANNELS[entry.channel.quantity].kind
-        ratio = np.abs(data.values[own] / simulated[own])
+        ratio = np.abs(data.values[of_channel] / simulated[of_channel])
         for factor in (1e-3, 1e3):
-            hit = own[(ratio < RATIO * factor) & (ratio * RATIO > factor)]
-            if kind == "temperature" or not 0 < 2 * hit.size <= own.size:
+            hit = of_channel[(ratio < RATIO * factor) & (ratio * RATIO > factor)]
+            if kind == "temperature" or not 0 < 2 * hit.size <= of_channel.size:
                 continue
             read, right = (
                 units.show(float(x[hit[0]]), kind, entry.unit, 4) for x in (data.values, simulated)
@@ -107,7 +107,7 @@ def swap_findings(data: Data, simulated: Array, spread: Array) -> Iterator[DataF
         if data.usable[i]:
             key = (feature.setting, feature.order, feature.part)
             series.setdefault(feature.channel, {})[key] = i
-    found = []
+    swaps = []
     for first, second in combinations(series, 2):
         if data.channels[first].channel.quantity != data.channels[second].channel.quantity:
             continue
@@ -121,9 +121,9 @@ def swap_findings(data: Data, simulated: Array, spread: Array) -> Iterator[DataF
             float(np.mean(((data.values[i] - simulated[j]) / sigma) ** 2)) for i, j in ((a, b), (b, a))
         ]
         if min(as_is) > FAR**2 and all(c < GAIN * s for c, s in zip(crossed, as_is)):
-            found.append((sum(crossed) / sum(as_is), first, second))
+            swaps.append((sum(crossed) / sum(as_is), first, second))
     named: set[str] = set()
-    for left, first, second in sorted(found):
+    for left, first, second in sorted(swaps):
         if named & {first, second}:
             continue
         named |= {first, second}
@@ -204,7 +204,7 @@ def compare(
     groups = [bands.of(feature) for feature in data.features]
     ambient = measurement.case.ambient.temperature
     located = locate(data.features, residual, spread, groups, data.settings, ambient)
-    found = Comparison(
+    comparison = Comparison(
         measurement=measurement,
         data=data,
         simulated=prediction.values,
@@ -223,8 +223,8 @@ def compare(
         healthy=healthy,
         foretold=known,
     )
-    said = (sentence(item, measurement, found.reference) for item in located if significant(item))
-    return replace(found, sentences=tuple(said))
+    said = (sentence(item, measurement, comparison.reference) for item in located if significant(item))
+    return replace(comparison, sentences=tuple(said))
 
 
 def _of_baseline(data: Data, healthy: HealthySet, known: Foretold) -> Iterator[DataFinding]:
@@ -367,7 +367,7 @@ def comparison_document(comparison: Comparison, *, model: str, fidelity: str) ->
             "title": healthy.title,
             "path": str(healthy.folder),
             "hash": healthy.hash,
-            "points": {now: before for now, before in comparison.foretold.points.items() if now}
+            "points": {here: before for here, before in comparison.foretold.points.items() if here}
             if comparison.foretold is not None
             else {},
         },
@@ -473,8 +473,8 @@ def compare_measurement(
     data = features(measurement)
     healthy = None if baseline is None else features(baseline)
 
-    def simulated(of: Data, channels: Sequence[Channel], what: str) -> Prediction:
-        say(f"predicting {len(of.settings)} operating points of {what}")
+    def simulated(of: Data, channels: Sequence[Channel], title: str) -> Prediction:
+        say(f"predicting {len(of.settings)} operating points of {title}")
         return predict(
             case, of.settings, channels, model=model, fidelity=fidelity, circuit=measured_against(channels)
         )

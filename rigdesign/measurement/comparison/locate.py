@@ -92,12 +92,12 @@ def locate(
         leading_variables(settings, ambient), {setting.name: i for i, setting in enumerate(settings)}
     )
     usable = np.isfinite(residual)
-    found = []
+    located = []
     for group in dict.fromkeys(groups):
         chosen = [i for i, name in enumerate(groups) if name == group and usable[i]]
         if chosen:
-            found.append(_located(group, chosen, features, residual, spread, variables))
-    return tuple(sorted(found, key=lambda item: -item.rms))
+            located.append(_located(group, chosen, features, residual, spread, variables))
+    return tuple(sorted(located, key=lambda item: -item.rms))
 
 
 @dataclass(frozen=True)
@@ -147,7 +147,7 @@ def _leading(
     """The variable that explains the most; nothing is said of fewer than three operating points."""
     if len({features[i].setting for i in chosen} & set(variables.row)) < 3:
         return "", 0.0
-    at = np.array([variables.row[features[i].setting] for i in chosen])
+    of_points = np.array([variables.row[features[i].setting] for i in chosen])
     series: dict[tuple[str, float, str], list[int]] = {}
     for row, i in enumerate(chosen):
         series.setdefault((features[i].channel, features[i].order, features[i].part), []).append(row)
@@ -158,7 +158,7 @@ def _leading(
     for name, values in variables.values.items():
         left = 0.0
         for rows in series.values():
-            x, r = values[at[rows]], whitened[rows]
+            x, r = values[of_points[rows]], whitened[rows]
             slope = float(x @ r) / max(float(x @ x), 1e-300)
             left += float(np.sum((r - slope * x) ** 2))
         share = 1.0 - left / whole
@@ -252,12 +252,12 @@ class Bands:
             zone = "the warm chamber"
         return f"{zone} of gearbox {name}"
 
-    def _zone_at(self, name: str, at: tuple[float, float, float]) -> str:
-        if at[2] < 0.0:
+    def _zone_at(self, name: str, place: tuple[float, float, float]) -> str:
+        if place[2] < 0.0:
             return "the field"
         geometry = housing_geometry(self._case.gearboxes[name])
         front, rear = geometry.warm_limits
-        return "the warm chamber" if front <= at[0] <= rear else "the cold ends"
+        return "the warm chamber" if front <= place[0] <= rear else "the cold ends"
 
     def _stream(self, place: str) -> str:
         stream = OilStreamName.read(place)

@@ -53,8 +53,10 @@ class Foretold:
 
 def shared_channels(data: Data, healthy: Data) -> list[Channel]:
     """Channels of a healthy set that have the name, the quantity and the place of one of the set."""
-    own = {name: entry.channel.reads for name, entry in data.channels.items()}
-    return [entry.channel for name, entry in healthy.channels.items() if own.get(name) == entry.channel.reads]
+    reads = {name: entry.channel.reads for name, entry in data.channels.items()}
+    return [
+        entry.channel for name, entry in healthy.channels.items() if reads.get(name) == entry.channel.reads
+    ]
 
 
 def at_all(healthy: Data, prediction: Prediction) -> Prediction:
@@ -102,7 +104,9 @@ def setting_spread(data: Data, simulated: Array) -> Array:
     keys = sorted({key for noise in data.setting_noise for key in noise})
     place = {setting.name: i for i, setting in enumerate(data.settings)}
     levels = np.array([[_level(setting, key) for key in keys] for setting in data.settings], dtype=float)
-    noise = np.array([[found.get(key, 0.0) for key in keys] for found in data.setting_noise], dtype=float)
+    noise = np.array(
+        [[at_point.get(key, 0.0) for key in keys] for at_point in data.setting_noise], dtype=float
+    )
     if not keys:
         return np.zeros(len(data.features))
     levels = np.where(np.isfinite(levels), levels, np.nanmean(levels, axis=0, keepdims=True))
@@ -111,12 +115,12 @@ def setting_spread(data: Data, simulated: Array) -> Array:
     moving = extent > 5.0 * noise.max(axis=0)
     variance = np.zeros(len(data.features))
     for rows in _series(data, np.isfinite(simulated)).values():
-        at = [place[data.features[i].setting] for i in rows]
+        points = [place[data.features[i].setting] for i in rows]
         values = simulated[rows]
         if moving.any() and len(rows) > 2:
-            scaled = centred[at][:, moving] / extent[moving]
+            scaled = centred[points][:, moving] / extent[moving]
             slopes = np.linalg.lstsq(scaled, values - values.mean(), rcond=1e-2)[0] / extent[moving]
-            variance[rows] += ((noise[at][:, moving] * slopes) ** 2).sum(axis=1)
+            variance[rows] += ((noise[points][:, moving] * slopes) ** 2).sum(axis=1)
         channel = data.channels[data.features[rows[0]].channel].channel
         if CHANNELS[channel.quantity].kind == "temperature":
             box = channel.place.partition(".")[0]
@@ -125,7 +129,7 @@ def setting_spread(data: Data, simulated: Array) -> Array:
                     where.startswith(f"{box}.") and channel.quantity == "temperature"
                 )
                 if quantity == "inlet_temperature" and mine and not moving[column]:
-                    variance[rows] += noise[at, column] ** 2
+                    variance[rows] += noise[points, column] ** 2
     return np.sqrt(variance)
 
 

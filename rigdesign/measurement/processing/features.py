@@ -176,20 +176,20 @@ def _repeated(names: Sequence[Feature], repeats: NDArray[np.int64], usable: NDAr
 
 
 def _setting_noise(measurement: MeasurementSet, point: MeasuredPoint) -> dict[tuple[str, str], float]:
-    found = {}
+    noise = {}
     for column, sensor in measurement.setting_sensors.items():
         count = np.count_nonzero(np.isfinite(point.readings[column]))
         if count:
-            found[sensor.quantity, sensor.place] = sensor.noise / math.sqrt(count)
-    return found
+            noise[sensor.quantity, sensor.place] = sensor.noise / math.sqrt(count)
+    return noise
 
 
 def _assemblies(points: Sequence[MeasuredPoint]) -> tuple[int, ...]:
-    count, found = 0, []
+    count, assemblies = 0, []
     for point in points:
         count += point.reassembled
-        found.append(count)
-    return tuple(found)
+        assemblies.append(count)
+    return tuple(assemblies)
 
 
 # Noise from repeats: pooled over the operating points of a series, and the declared uncertainty.
@@ -261,14 +261,14 @@ def without_outliers(
         numbers = ", ".join(str(i + 1) for i in np.flatnonzero(far))
         if known:
             clean[feature] = np.where(far, np.nan, values)
-            what = f"repeat {numbers} lies more than {OUTLIER:g} standard deviations off the others and is not used"
+            problem = f"repeat {numbers} lies more than {OUTLIER:g} standard deviations off the others and is not used"
             if count == 2:
-                what = (
+                problem = (
                     f"repeats {numbers} lie more than {OUTLIER:g} standard deviations apart; neither is used"
                 )
             findings.append(
                 DataFinding(id="repeat_outlier", weight="dropped", channels=(feature.channel,), points=points,
-                        text=f"{where}: {what}; measure again")
+                        text=f"{where}: {problem}; measure again")
             )  # fmt: skip
         else:
             findings.append(
@@ -296,10 +296,10 @@ def _scatters(readings: Readings) -> dict[tuple[str, float], tuple[float, bool]]
             deviations.setdefault((feature.channel, feature.order), []).append(_deviations(finite))
     return {
         series: (
-            MAD_TO_SD * float(np.median(np.concatenate(found))),
-            len(found) >= LEAST_PAIRS or any(len(one) > 2 for one in found),
+            MAD_TO_SD * float(np.median(np.concatenate(series_deviations))),
+            len(series_deviations) >= LEAST_PAIRS or any(len(repeats) > 2 for repeats in series_deviations),
         )
-        for series, found in deviations.items()
+        for series, series_deviations in deviations.items()
     }
 
 
@@ -324,17 +324,17 @@ def with_rates(measurement: MeasurementSet) -> MeasurementSet:
     The rate of a point is the slope of its repeats; its uncertainty is that of the least certain point, and what a
     steady rig drifts by.
     """
-    found: dict[str, dict[str, float]] = {}
+    slopes_by_channel: dict[str, dict[str, float]] = {}
     spreads: dict[str, float] = {}
     for point in measurement.points:
         for rate in rates(measurement, point):
-            found.setdefault(rate.channel, {})[point.name] = rate.value
+            slopes_by_channel.setdefault(rate.channel, {})[point.name] = rate.value
             spreads[rate.channel] = max(spreads.get(rate.channel, 0.0), hypot(rate.sd, LEAST))
-    if not found:
+    if not slopes_by_channel:
         return measurement
     channels = dict(measurement.channels)
     readings = dict(measurement.readings)
-    for name, slopes in found.items():
+    for name, slopes in slopes_by_channel.items():
         channel = MeasuredChannel(
             channel=replace(channels[name].channel, name=NAME.format(name), quantity="warming_rate"),
             unit="K/h",

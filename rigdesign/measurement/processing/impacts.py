@@ -75,8 +75,8 @@ def frequency_response(force: Signal, response: Signal, length: float | None = N
             f"{size} samples a blow, {LEAST_SAMPLES} are needed; leave more time before, between and after blows"
         )
     pushes, moves = (
-        np.fft.rfft([one.values[part] - np.mean(one.values[part]) for part in parts])
-        for one in (force, response)
+        np.fft.rfft([signal.values[part] - np.mean(signal.values[part]) for part in parts])
+        for signal in (force, response)
     )
     of_force = np.mean(np.abs(pushes) ** 2, axis=0)
     across = np.mean(np.conj(pushes) * moves, axis=0)
@@ -98,21 +98,21 @@ def read_impacts(plan: SetPlan, findings: MutableSequence[DataFinding]) -> dict[
     MeasurementError
         A file that cannot be read, a record without the signal of the hammer.
     """
-    found: dict[str, list[float]] = {}
+    frequencies: dict[str, list[float]] = {}
     for number, impact in enumerate(plan.document.data.impacts):
         asked = {n: c for n, c in plan.channels.items() if c.channel.quantity == "natural_frequency"}
         wanted = (impact.force, *(channel.signal for channel in asked.values()))
         signals = read_signals(plan.folder, impact.file, plan.document.data, wanted)
         if impact.force not in signals:
-            at = f"data.impacts.{number}.force"
-            raise MeasurementError([unknown(at, impact.force, signals.names, f"signal in {impact.file}")])
+            key = f"data.impacts.{number}.force"
+            raise MeasurementError([unknown(key, impact.force, signals.names, f"signal in {impact.file}")])
         for name, channel in asked.items():
             if channel.signal in signals:
                 force, response = signals[impact.force], signals[channel.signal]
-                found.setdefault(name, []).extend(
+                frequencies.setdefault(name, []).extend(
                     _frequency(name, channel, impact, (force, response), findings)
                 )
-    return {Feature(name, ""): np.array(values) for name, values in found.items() if values}
+    return {Feature(name, ""): np.array(values) for name, values in frequencies.items() if values}
 
 
 def _frequency(
@@ -138,17 +138,17 @@ def _frequency(
         say("no_resonance", "dropped", "a response has many peaks; write the search_range of this one")
         return
     try:
-        found = frequency_response(*signals, impact.length)
-        if channel.search_range[0] > found.frequency[-1]:
+        measured = frequency_response(*signals, impact.length)
+        if channel.search_range[0] > measured.frequency[-1]:
             raise ValueError(
-                f"its samples show frequencies up to {found.frequency[-1]:.4g} Hz, search_range begins at "
+                f"its samples show frequencies up to {measured.frequency[-1]:.4g} Hz, search_range begins at "
                 f"{channel.search_range[0]:.4g} Hz; sample faster, or correct the unit of its time"
             )
-        peak = resonance_peak(found.frequency, np.abs(found.response), channel.search_range)
+        peak = resonance_peak(measured.frequency, np.abs(measured.response), channel.search_range)
     except ValueError as error:
         say("no_resonance", "dropped", str(error))
         return
-    near = found.coherence[int(np.argmin(np.abs(found.frequency - peak.place)))]
+    near = measured.coherence[int(np.argmin(np.abs(measured.frequency - peak.place)))]
     damping = peak.half_width / peak.place
     said = f"peak at {peak.place:.6g} Hz, damping ratio {damping:.2g}, known to {peak.uncertainty:.2g} Hz"
     if near < LEAST_COHERENCE:
@@ -158,7 +158,7 @@ def _frequency(
             f"{said}: coherence {near:.2g} there, at least {LEAST_COHERENCE:g}; strike again",
         )
     else:
-        say("resonance", "note", f"{said}, mean of {found.blows} blows")
+        say("resonance", "note", f"{said}, mean of {measured.blows} blows")
     yield peak.place
 
 

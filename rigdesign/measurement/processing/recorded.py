@@ -187,7 +187,7 @@ def read_recordings(
     faults = list(_faults(document, rows))
     if faults:
         raise MeasurementError(faults)
-    found: Readings = {}
+    readings: Readings = {}
     lasting: dict[str, dict[str, float]] = {}
     by_name = {point.name: point for point in plan.points}
     channels = {n: c for n, c in plan.channels.items() if c.channel.quantity not in STANDING_QUANTITIES}
@@ -208,8 +208,10 @@ def read_recordings(
             findings.append(_unused(entry, channels, signals))
             continue
         lasting.setdefault(entry.point, {})[entry.file] = max(float(np.ptp(s.time)) for s in signals.values())
-        roots = {name: one for name, one in recorded.items() if one.channel.quantity == "root_strain"}
-        here = {name: one for name, one in recorded.items() if name not in roots}
+        roots = {
+            name: channel for name, channel in recorded.items() if channel.channel.quantity == "root_strain"
+        }
+        here = {name: channel for name, channel in recorded.items() if name not in roots}
         faults += unit_faults(entry.file, here, signals)
         if faults:
             continue
@@ -217,18 +219,18 @@ def read_recordings(
         assert place is not None
         count = len(rows.rows_of(entry.point))
         read = _Recording(entry, document, plan.places, by_name[entry.point], findings)
-        turning = [name for name, one in recorded.items() if one.channel.quantity in of_angle]
+        turning = [name for name, channel in recorded.items() if channel.channel.quantity in of_angle]
         turn = read.turn(signals, turning) if turning else None
         numbers = [*read.numbers(here, signals, turn)]
         if turn is not None or document.data.tach is None:
             numbers += _of_gauges(plan, entry, by_name[entry.point], roots, findings)
         for feature, value in numbers:
             if feature not in known:
-                found.setdefault(feature, np.full(count, np.nan))[place] = value
+                readings.setdefault(feature, np.full(count, np.nan))[place] = value
     if faults:
         raise MeasurementError(faults)
     findings.extend(_shorter(lasting))
-    return found
+    return readings
 
 
 def _unused(entry: Recording, channels: Mapping[str, MeasuredChannel], signals: Signals) -> DataFinding:
@@ -253,11 +255,11 @@ def _of_gauges(
     if not channels:
         return
     gauges = RecordedGauges.of(plan.places.case, plan.folder, plan.document.data)
-    for found in gauges.numbers(entry, point, channels):
-        if isinstance(found, DataFinding):
-            findings.append(found)
+    for number in gauges.numbers(entry, point, channels):
+        if isinstance(number, DataFinding):
+            findings.append(number)
         else:
-            yield found
+            yield number
 
 
 def _shorter(lasting: Mapping[str, Mapping[str, float]]) -> Iterator[DataFinding]:
@@ -337,7 +339,9 @@ class _Recording:
 
     def _speed_error(self, speed: float) -> float:
         """1 sigma of the speed of the table [rad/s]."""
-        (sensor,) = (one for one in sensors_of(self._document).values() if one.quantity == "speed")
+        (sensor,) = (
+            setting for setting in sensors_of(self._document).values() if setting.quantity == "speed"
+        )
         return math.hypot(sensor.noise, sensor.offset_sd, sensor.scale_sd * speed)
 
     def _looks_right(self, name: str, signal: Signal, said: Sequence[tuple[str, Weight, str]]) -> bool:
@@ -350,36 +354,37 @@ class _Recording:
     ) -> Iterator[tuple[Feature, float]]:
         wanted = channel.channel.orders
         try:
-            found = signal_orders(signal, turn, wanted, self._places.cycle)
+            measured = signal_orders(signal, turn, wanted, self._places.cycle)
         except ValueError as error:
             self._say("recording", "dropped", f"{name}: {error}", name)
             return
-        self._say_orders(name, found, signal, turn)
-        for order, value in found.values.items():
+        self._say_orders(name, measured, signal, turn)
+        for order, value in measured.values.items():
             if order == 0.0:
                 yield Feature(name, self._point.name), scale * value.real
             else:
                 yield Feature(name, self._point.name, order, "real"), scale * value.real
                 yield Feature(name, self._point.name, order, "imaginary"), scale * value.imag
 
-    def _say_orders(self, name: str, found: MeasuredOrders, signal: Signal, turn: TurnAngle) -> None:
-        if found.left_out:
+    def _say_orders(self, name: str, measured: MeasuredOrders, signal: Signal, turn: TurnAngle) -> None:
+        if measured.left_out:
             self._say(
                 "missing_samples",
                 "note",
-                f"{name}: {found.left_out} cycles with missing samples left out",
+                f"{name}: {measured.left_out} cycles with missing samples left out",
                 name,
             )
-        if found.too_fast:
+        if measured.too_fast:
             self._say(
                 "too_fast", "dropped",
-                f"{name}: orders from {min(found.too_fast):g} on have too few samples per period; sample faster", name,
+                f"{name}: orders from {min(measured.too_fast):g} on have too few samples per period; sample faster",
+                name,
             )  # fmt: skip
-        if found.without_phase:
-            shown = ", ".join(f"{order:.4g}" for order in found.without_phase[:4])
+        if measured.without_phase:
+            shown = ", ".join(f"{order:.4g}" for order in measured.without_phase[:4])
             why = (
                 f"the recording is shorter than the {self._places.cycle} turns of a hunting cycle"
-                if turn.absolute or found.cycle != self._places.cycle
+                if turn.absolute or measured.cycle != self._places.cycle
                 else "full turns are not counted from where both teeth 0 met; state start_turn of the recording"
             )
             self._say("without_phase", "dropped", f"{name}: orders {shown}, … are not used: {why}", name)
@@ -416,14 +421,14 @@ def _faults(document: MeasurementFile, rows: Rows) -> Iterator[Fault]:
         )  # fmt: skip
     seen: set[tuple[str, int]] = set()
     for index, entry in enumerate(document.data.recordings):
-        at = f"data.recordings.{index}"
+        key = f"data.recordings.{index}"
         if entry.point not in rows.names:
-            yield unknown(f"{at}.point", entry.point, rows.names, f"point in {rows.table.file}")
+            yield unknown(f"{key}.point", entry.point, rows.names, f"point in {rows.table.file}")
         elif rows.place(entry.point, entry.repeat) is None:
-            yield Fault(f"{at}.repeat", str(entry.repeat), f"{entry.point} has no such repeat", "correct it")
+            yield Fault(f"{key}.repeat", str(entry.repeat), f"{entry.point} has no such repeat", "correct it")
         elif (entry.point, entry.repeat) in seen:
             yield Fault(
-                f"{at}.repeat", str(entry.repeat), f"{entry.point} has two recordings of it", "keep one"
+                f"{key}.repeat", str(entry.repeat), f"{entry.point} has two recordings of it", "keep one"
             )
         seen.add((entry.point, entry.repeat))
 

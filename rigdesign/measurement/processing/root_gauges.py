@@ -76,23 +76,25 @@ class RecordedGauges:
         recording = StrainRecording(
             file=entry.file,
             gauges={
-                name: GaugeChannel(signal=one.signal, bridge=self.gauges[one.channel.place].point.bridge)
-                for name, one in channels.items()
+                name: GaugeChannel(
+                    signal=channel.signal, bridge=self.gauges[channel.channel.place].point.bridge
+                )
+                for name, channel in channels.items()
             },
             angle=self.data.tach or ConstantSpeed(point.setting.speed),
             data=self.data,
         )
-        found = read_strain_records(self.folder, recording)
+        strain = read_strain_records(self.folder, recording)
         if self.data.tach is None:
             yield _finding(
                 entry, point, "no_tach", "note",
                 "no tach: the rolling angle follows from the speed in the table; speed ripple smears the curves",
             )  # fmt: skip
         for name, channel in channels.items():
-            for text in found.notes[name]:
+            for text in strain.notes[name]:
                 yield _finding(entry, point, "gauge_signal", "suspect", f"{name}: {text}", name)
             try:
-                curve = self._mean_curve(channel.channel.place, found.records[name], found.angle)
+                curve = self._mean_curve(channel.channel.place, strain.records[name], strain.angle)
             except MeasurementError as error:
                 yield _finding(entry, point, "recording", "dropped", f"{name}: {error.faults[0]}", name)
                 continue
@@ -258,17 +260,17 @@ def _wanted(recording: StrainRecording) -> dict[str, str]:
 
 
 def _wrong_units(recording: StrainRecording, signals: Signals) -> Iterator[Fault]:
-    found: dict[str, list[str]] = {}
+    by_unit: dict[str, list[str]] = {}
     for name, channel in recording.gauges.items():
-        at = f"{recording.file}, gauges.{name}"
-        faults = [*_wrong_unit(at, channel.unit, signals[channel.signal], OUTPUT_KINDS)]
+        place = f"{recording.file}, gauges.{name}"
+        faults = [*_wrong_unit(place, channel.unit, signals[channel.signal], OUTPUT_KINDS)]
         yield from faults
         if not faults and not channel.unit:
-            found.setdefault(_output_unit(channel, signals)[1], []).append(name)
+            by_unit.setdefault(_output_unit(channel, signals)[1], []).append(name)
         if channel.supply:
-            yield from _wrong_unit(f"{at}.supply", "", signals[channel.supply], ("voltage",))
-    if len(found) > 1:
-        shown = "; ".join(f"{', '.join(names)} in {unit}" for unit, names in found.items())
+            yield from _wrong_unit(f"{place}.supply", "", signals[channel.supply], ("voltage",))
+    if len(by_unit) > 1:
+        shown = "; ".join(f"{', '.join(names)} in {unit}" for unit, names in by_unit.items())
         yield Fault(
             f"{recording.file}, gauges", shown, "the bridges of one file are stored in different units",
             "if that is meant, state the unit of each channel",
@@ -291,19 +293,19 @@ def _dead(recording: StrainRecording, signals: Signals) -> Iterator[Fault]:
             )  # fmt: skip
 
 
-def _wrong_unit(at: str, stated: str, signal: Signal, kinds: tuple[str, ...]) -> Iterator[Fault]:
+def _wrong_unit(place: str, stated: str, signal: Signal, kinds: tuple[str, ...]) -> Iterator[Fault]:
     """The fault of a channel without a unit of these kinds, or with another one in the file than stated."""
     choices = ", ".join(unit for kind in kinds for unit in KINDS[kind].units)
     unit = stated or signal.unit
     if not unit:
-        yield Fault(at, "", "neither the file nor the channel has a unit", f"write one of {choices}")
+        yield Fault(place, "", "neither the file nor the channel has a unit", f"write one of {choices}")
         return
     kind = next((kind for kind in kinds if accepted_unit(unit, kind)), None)
     if kind is None:
-        yield Fault(at, unit, unit_problem(unit, kinds[0]), f"write one of {choices}")
+        yield Fault(place, unit, unit_problem(unit, kinds[0]), f"write one of {choices}")
     elif stated and signal.unit and not same_worth(stated, signal.unit, kind):
         yield Fault(
-            at, stated, f'the file says "{signal.unit}"', "correct what is wrong; nothing is converted"
+            place, stated, f'the file says "{signal.unit}"', "correct what is wrong; nothing is converted"
         )
 
 

@@ -67,13 +67,15 @@ class OrderCurves:
 
     def at(self, order: float, speed: float) -> complex:
         """Amplitude at a speed [rad/s], between the windows by straight lines; NaN outside."""
-        own = self.amplitude[order]
-        known = np.flatnonzero(np.isfinite(own.real))
+        curve = self.amplitude[order]
+        known = np.flatnonzero(np.isfinite(curve.real))
         rising = known[np.argsort(self.speed[known])]
         places = self.speed[rising]
         if not rising.size or not places[0] <= speed <= places[-1]:
             return complex(math.nan, math.nan)
-        return complex(np.interp(speed, places, own[rising].real), np.interp(speed, places, own[rising].imag))
+        return complex(
+            np.interp(speed, places, curve[rising].real), np.interp(speed, places, curve[rising].imag)
+        )
 
 
 def order_curves(signal: Signal, turn: TurnAngle, orders: Sequence[float], turns: int) -> OrderCurves:
@@ -101,12 +103,12 @@ def order_curves(signal: Signal, turn: TurnAngle, orders: Sequence[float], turns
         )
     starts = angle[0] + (1.0 - OVERLAP) * length * np.arange(count)
     wanted = np.asarray(orders, dtype=float)
-    found = np.full((count, wanted.size), complex(math.nan, math.nan))
+    amplitudes = np.full((count, wanted.size), complex(math.nan, math.nan))
     for row, start in enumerate(starts):
         first, last = np.searchsorted(angle, (start, start + length))
-        found[row] = _projected(angle[first:last], values[first:last], start, turns, wanted)
+        amplitudes[row] = _projected(angle[first:last], values[first:last], start, turns, wanted)
     speed, rate = _speeds(time, angle, starts + 0.5 * length, length)
-    return OrderCurves(speed=speed, rate=rate, amplitude=dict(zip(wanted.tolist(), found.T)))
+    return OrderCurves(speed=speed, rate=rate, amplitude=dict(zip(wanted.tolist(), amplitudes.T)))
 
 
 def _projected(angle: Array, values: Array, start: float, turns: int, orders: Array) -> Complex:
@@ -167,10 +169,10 @@ def read_sweeps(plan: SetPlan, findings: MutableSequence[DataFinding]) -> Swept:
     settings: dict[str, OperatingCondition] = {}
     orders: dict[Feature, list[float]] = {}
     for number, sweep in enumerate(document.data.sweeps):
-        one = _Sweep(plan, sweep, f"data.sweeps.{number}", findings)
-        for name, speed in one.resonances():
+        measured = _Sweep(plan, sweep, f"data.sweeps.{number}", findings)
+        for name, speed in measured.resonances():
             resonances.setdefault(name, []).append(speed)
-        for setting, numbers in one.points():
+        for setting, numbers in measured.points():
             settings.setdefault(setting.name, setting)
             for feature, value in numbers.items():
                 orders.setdefault(feature, []).append(value)
@@ -195,8 +197,8 @@ def _point(plan: SetPlan, setting: OperatingCondition) -> MeasuredPoint:
 class _Sweep:
     """One sweep: its angle, its channels, and what is to be said of them."""
 
-    def __init__(self, plan: SetPlan, sweep: Sweep, at: str, findings: MutableSequence[DataFinding]) -> None:
-        self._plan, self._sweep, self._at, self._findings = plan, sweep, at, findings
+    def __init__(self, plan: SetPlan, sweep: Sweep, key: str, findings: MutableSequence[DataFinding]) -> None:
+        self._plan, self._sweep, self._key, self._findings = plan, sweep, key, findings
         tach = plan.document.data.tach
         wanted = [channel.signal for channel in plan.channels.values()] + [*(tach.signals if tach else ())]
         self._signals: Signals = read_signals(plan.folder, sweep.file, plan.document.data, wanted)
@@ -236,9 +238,9 @@ class _Sweep:
         for speed in self._sweep.speeds:
             setting = self._setting(speed)
             numbers: dict[Feature, float] = {}
-            for name, one in curves.items():
-                if one is not None:
-                    numbers |= self._orders(name, one, setting)
+            for name, curve in curves.items():
+                if curve is not None:
+                    numbers |= self._orders(name, curve, setting)
             if numbers:
                 yield setting, numbers
 
@@ -304,13 +306,13 @@ class _Sweep:
             turn = turn_angle(tach, self._signals, self._sweep.start_turn)
         except TachError as error:
             raise MeasurementError(
-                [Fault(f"{self._at}.file", written(self._sweep.file), str(error), "correct it")]
+                [Fault(f"{self._key}.file", written(self._sweep.file), str(error), "correct it")]
             ) from None
         half = len(turn.time) // 2
         first, last = (_mean_speed(turn, part) for part in (slice(0, half + 1), slice(half, None)))
         if (last > first) != (self._sweep.direction == "up"):
             raise MeasurementError(
-                [Fault(f"{self._at}.direction", written(self._sweep.direction),
+                [Fault(f"{self._key}.direction", written(self._sweep.direction),
                        f"the tach goes from {_rpm(first)} to {_rpm(last)} rpm, means of both halves",
                        "correct the key, or look at the file")]
             )  # fmt: skip
@@ -334,8 +336,8 @@ class _Sweep:
         return OperatingCondition(name=name, speed=speed, torque=self._sweep.torque)
 
     def _same_torque(self, torque: float | None) -> bool:
-        own = self._sweep.torque
-        return torque is not None and abs(torque - own) <= SAME_TORQUE * max(abs(own), abs(torque))
+        stated = self._sweep.torque
+        return torque is not None and abs(torque - stated) <= SAME_TORQUE * max(abs(stated), abs(torque))
 
     def _span(self, curves: OrderCurves) -> tuple[float, float]:
         return float(curves.speed.min()), float(curves.speed.max())

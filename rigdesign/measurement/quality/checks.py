@@ -36,10 +36,12 @@ def _dead(measurement: MeasurementSet) -> Iterator[DataFinding]:
     for name, entry in measurement.channels.items():
         if entry.channel.quantity in STANDING_QUANTITIES:
             continue
-        own = measurement.by_channel[name]
-        levels = np.concatenate([values[np.isfinite(values)] for values in own.values()] or [np.empty(0)])
+        readings = measurement.by_channel[name]
+        levels = np.concatenate(
+            [values[np.isfinite(values)] for values in readings.values()] or [np.empty(0)]
+        )
         moving = bool(levels.size and np.ptp(levels) > 0.0)
-        points = {feature.setting for feature, values in own.items() if np.isfinite(values).any()}
+        points = {feature.setting for feature, values in readings.items() if np.isfinite(values).any()}
         if not points:
             yield DataFinding(
                 id="dead_channel", weight="dropped", channels=(name,),
@@ -114,7 +116,7 @@ class Rate:
 
 def rates(measurement: MeasurementSet, point: MeasuredPoint) -> list[Rate]:
     """Of every thermocouple with two repeats at different times; none where the table has no times."""
-    found = []
+    rates_of_point = []
     for name, entry in measurement.channels.items():
         values = measurement.readings.get(Feature(name, point.name))
         if entry.channel.quantity != "temperature" or values is None or point.times is None:
@@ -123,25 +125,25 @@ def rates(measurement: MeasurementSet, point: MeasuredPoint) -> list[Rate]:
         fitted = _slope(point.times[known], values[known]) if np.count_nonzero(known) > 1 else None
         if fitted is not None and entry.noise > 0.0:
             slope, spread = fitted
-            found.append(Rate(name, slope, entry.noise / spread))
-    return found
+            rates_of_point.append(Rate(name, slope, entry.noise / spread))
+    return rates_of_point
 
 
 def still_warming(measurement: MeasurementSet) -> Iterator[DataFinding]:
     """Points whose temperatures drift from repeat to repeat."""
     for point in measurement.points:
-        own = rates(measurement, point)
-        if not own or not point.steady:
+        drifts = rates(measurement, point)
+        if not drifts or not point.steady:
             continue
-        together = sum(rate.value / rate.sd for rate in own) / np.sqrt(len(own))
-        fastest = max(own, key=lambda rate: abs(rate.value))
+        together = sum(rate.value / rate.sd for rate in drifts) / np.sqrt(len(drifts))
+        fastest = max(drifts, key=lambda rate: abs(rate.value))
         if abs(together) < SURE or abs(fastest.value) < LEAST:
             continue
         still = "still rise" if together > 0.0 else "still fall"
         yield DataFinding(
             id="still_warming",
             weight="suspect" if abs(fastest.value) > EQUILIBRIUM else "note",
-            channels=tuple(rate.channel for rate in own if abs(rate.value) > SURE * rate.sd),
+            channels=tuple(rate.channel for rate in drifts if abs(rate.value) > SURE * rate.sd),
             points=(point.name,),
             text=f"{point.name}: temperatures {still} from repeat to repeat, by {HOUR * abs(fastest.value):.2g} K/h at "
             f"{fastest.channel} (± {HOUR * fastest.sd:.1g}); wait and measure again, or write steady = false under "
@@ -278,6 +280,6 @@ def lines_off_the_mesh(
         near = SEARCH[np.abs(SEARCH) * order < 0.8]
         sizes = np.array([abs(np.sum(weighted * np.exp(-1j * order * (1 + x) * angle))) for x in near])
         best = int(np.argmax(sizes))
-        own = sizes[np.abs(near) * order * SEARCH_TURNS < 3.0].max(initial=0.0)
-        if abs(near[best]) > LINE_OFF and sizes[best] > LINE_ABOVE * own:
+        mesh_line = sizes[np.abs(near) * order * SEARCH_TURNS < 3.0].max(initial=0.0)
+        if abs(near[best]) > LINE_OFF and sizes[best] > LINE_ABOVE * mesh_line:
             yield mesh, order * (1.0 + float(near[best]))

@@ -180,8 +180,8 @@ def _alike(
 def _same_readings(measurement: MeasurementSet) -> Iterator[DataFinding]:
     """Two channels with the same numbers: one signal exported twice."""
     first_with: dict[bytes, str] = {}
-    for name, own in measurement.by_channel.items():
-        values = np.concatenate([*own.values(), np.empty(0)])
+    for name, readings in measurement.by_channel.items():
+        values = np.concatenate([*readings.values(), np.empty(0)])
         finite = values[np.isfinite(values)]
         if finite.size < 3 or np.ptp(finite) == 0.0:
             continue

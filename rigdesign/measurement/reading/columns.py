@@ -142,16 +142,18 @@ def _sd(text: str | None, measured: Measured) -> float:
 
 
 def _setting(name: str, entry: SettingColumn, places: Places) -> Iterator[Fault]:
-    at = f"settings.{name}"
+    table = f"settings.{name}"
     spreads = {"uncertainty": entry.uncertainty}
     if entry.offset_uncertainty is not None:
         spreads["offset_uncertainty"] = entry.offset_uncertainty
-    yield from _unit_and_spread(at, entry.unit, spreads, SETTINGS[entry.quantity])
+    yield from _unit_and_spread(table, entry.unit, spreads, SETTINGS[entry.quantity])
     if entry.quantity in PLACED_SETTINGS:
         if entry.place not in places.streams:
-            yield unknown(f"{at}.place", entry.place, places.streams, "oil stream")
+            yield unknown(f"{table}.place", entry.place, places.streams, "oil stream")
     elif entry.place:
-        yield Fault(f"{at}.place", written(entry.place), f"{entry.quantity} has no place", "remove the key")
+        yield Fault(
+            f"{table}.place", written(entry.place), f"{entry.quantity} has no place", "remove the key"
+        )
 
 
 def _said_twice(document: MeasurementFile) -> Iterator[Fault]:
@@ -159,71 +161,71 @@ def _said_twice(document: MeasurementFile) -> Iterator[Fault]:
     for name, entry in document.settings.items():
         other = seen.setdefault((entry.quantity, entry.place), name)
         if other != name:
-            what = f"{entry.quantity} {entry.place}".strip()
+            quantity = f"{entry.quantity} {entry.place}".strip()
             yield Fault(
-                f"settings.{name}", "", f"{other} says {what} already",
+                f"settings.{name}", "", f"{other} says {quantity} already",
                 "keep one of them; a second sensor may become a note of its own",
             )  # fmt: skip
 
 
 def _channel(name: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
-    at = f"channels.{name}"
+    table = f"channels.{name}"
     spreads = {"uncertainty": entry.uncertainty, "offset_uncertainty": entry.offset_uncertainty}
     given = {key: text for key, text in spreads.items() if text is not None}
-    yield from _unit_and_spread(at, entry.unit, given, CHANNELS[entry.quantity])
-    yield from _place(f"{at}.place", entry, places)
-    yield from direction_faults(at, entry, places)
-    yield from modal_faults(at, entry)
+    yield from _unit_and_spread(table, entry.unit, given, CHANNELS[entry.quantity])
+    yield from _place(f"{table}.place", entry, places)
+    yield from direction_faults(table, entry, places)
+    yield from modal_faults(table, entry)
     if entry.quantity not in ORDER_QUANTITIES | {"resonance_speed"} and entry.orders is not None:
         yield Fault(
-            f"{at}.orders", "", f"{entry.quantity} is read as one number, not by orders", "remove the key"
+            f"{table}.orders", "", f"{entry.quantity} is read as one number, not by orders", "remove the key"
         )
     if entry.orders is not None and not entry.orders:
-        yield Fault(f"{at}.orders", "[]", "no order is named", "name some or leave the key out")
-    yield from _windows(at, entry)
+        yield Fault(f"{table}.orders", "[]", "no order is named", "name some or leave the key out")
+    yield from _windows(table, entry)
     if entry.quantity in WITHOUT_MEAN and entry.orders == (0.0,):
         said = entry.quantity.replace("_", " ")
-        yield Fault(f"{at}.orders", "[0]", f"the mean of {an(said)} says nothing", "name orders above 0")
+        yield Fault(f"{table}.orders", "[0]", f"the mean of {an(said)} says nothing", "name orders above 0")
 
 
-def _windows(at: str, entry: ChannelTable) -> Iterator[Fault]:
+def _windows(table: str, entry: ChannelTable) -> Iterator[Fault]:
     """Keys that root gauges alone have, or have not."""
     gauge = entry.quantity == "root_strain"
     if entry.windows is not None and not gauge:
-        yield Fault(f"{at}.windows", "", f"{entry.quantity} has no windows", "remove the key")
+        yield Fault(f"{table}.windows", "", f"{entry.quantity} has no windows", "remove the key")
     if entry.windows is not None and len(set(entry.windows)) < max(1, len(entry.windows)):
         yield Fault(
-            f"{at}.windows", ", ".join(entry.windows), "must be different ones, one at least",
+            f"{table}.windows", ", ".join(entry.windows), "must be different ones, one at least",
             f"choose of {', '.join(ROOT_WINDOWS)}, or leave the key out",
         )  # fmt: skip
     if gauge and entry.transfer is not None:
         yield Fault(
-            f"{at}.transfer", "", "a curve cannot be corrected for it",
+            f"{table}.transfer", "", "a curve cannot be corrected for it",
             f"write response_time of the gauge {entry.place} in the case: the prediction then has the low-pass",
         )  # fmt: skip
 
 
-def _place(at: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
+def _place(key: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
     known = places.of(entry.quantity)
-    what = f"place of a channel of {entry.quantity.replace('_', ' ')}"
+    role = f"place of a channel of {entry.quantity.replace('_', ' ')}"
     if entry.at is not None and entry.quantity not in ("temperature", "seal_gap"):
         yield Fault(
-            f"{at.removesuffix('.place')}.at", "", f"{entry.quantity} has no coordinates", "remove the key"
+            f"{key.removesuffix('.place')}.at", "", f"{entry.quantity} has no coordinates", "remove the key"
         )
     if entry.quantity == "temperature" and entry.at is not None:
         if entry.place not in places.housings:
-            yield unknown(at, entry.place, places.housings, "gearbox with a housing")
+            yield unknown(key, entry.place, places.housings, "gearbox with a housing")
         return
     if entry.quantity == "temperature" and entry.place in places.housings:
         yield Fault(
-            at, written(entry.place), "a gearbox alone is no place of a temperature",
+            key, written(entry.place), "a gearbox alone is no place of a temperature",
             f'add coordinates, at = ["0.1 m", "0 m", "0.2 m"], or a surface such as "{known[0]}"',
         )  # fmt: skip
         return
     if entry.quantity in MODAL_QUANTITIES and known:
         if not places.is_mode(entry.place):
             yield Fault(
-                at, written(entry.place), "neither the number of a torsional natural frequency nor the name of a mode",
+                key, written(entry.place), "neither the number of a torsional natural frequency nor the name of a mode",
                 f'write "1", "2", … or a name such as "lateral {places.of("angle")[0]} 1"',
             )  # fmt: skip
         return
@@ -232,18 +234,22 @@ def _place(at: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
     if entry.quantity == "temperature" and places.from_file(entry.place.partition(".")[0]):
         return
     if entry.place not in known:
-        yield unknown(at, entry.place, known, what)
+        yield unknown(key, entry.place, known, role)
 
 
-def _unit_and_spread(at: str, unit: str, spreads: Mapping[str, str], measured: Measured) -> Iterator[Fault]:
+def _unit_and_spread(
+    table: str, unit: str, spreads: Mapping[str, str], measured: Measured
+) -> Iterator[Fault]:
     if accepted_unit(unit, measured.kind) is None:
         choices = ", ".join(KINDS[measured.kind].units)
-        yield Fault(f"{at}.unit", written(unit), unit_problem(unit, measured.kind), f"write one of {choices}")
+        yield Fault(
+            f"{table}.unit", written(unit), unit_problem(unit, measured.kind), f"write one of {choices}"
+        )
     for key, text in spreads.items():
         try:
             value = units.parse(text, measured.spread)
         except units.QuantityError as error:
-            yield Fault(f"{at}.{key}", written(text), error.problem, error.remedy)
+            yield Fault(f"{table}.{key}", written(text), error.problem, error.remedy)
             continue
         span = measured.limits[1] - measured.limits[0]
         problem = ""
@@ -254,7 +260,7 @@ def _unit_and_spread(at: str, unit: str, spreads: Mapping[str, str], measured: M
         elif 0.0 < value < LEAST_UNCERTAINTY * span:
             problem = "is smaller than that of any instrument"
         if problem:
-            yield Fault(f"{at}.{key}", written(text), problem, f'write e.g. "{measured.uncertainty}"')
+            yield Fault(f"{table}.{key}", written(text), problem, f'write e.g. "{measured.uncertainty}"')
 
 
 # Keys of channels that only some quantities have: direction and position, order and torque, a range to search.
@@ -265,68 +271,72 @@ def an(words: str) -> str:
     return f"an {words}" if words[0] in "aeiou" else f"a {words}"
 
 
-def direction_faults(at: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
+def direction_faults(table: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
     """Direction of lateral channels, position of those on a shaft."""
     said = entry.quantity.replace("_", " ")
     lateral = entry.quantity in LATERAL_QUANTITIES
     if lateral and entry.direction is None:
-        yield Fault(f"{at}.direction", "", f"{an(said)} has a direction", REMEDY)
+        yield Fault(f"{table}.direction", "", f"{an(said)} has a direction", REMEDY)
     elif entry.direction is not None and not lateral:
-        yield Fault(f"{at}.direction", written(entry.direction), f"{said} has no direction", "remove the key")
+        yield Fault(
+            f"{table}.direction", written(entry.direction), f"{said} has no direction", "remove the key"
+        )
     elif entry.direction is not None:
         try:
             direction_of(entry.direction)
         except units.QuantityError as error:
-            yield Fault(f"{at}.direction", written(entry.direction), error.problem, REMEDY)
+            yield Fault(f"{table}.direction", written(entry.direction), error.problem, REMEDY)
     on_shaft = entry.quantity == "shaft_displacement" and entry.place in places.shafts
     if on_shaft and entry.position is None:
         yield Fault(
-            f"{at}.position", "", "a probe on a shaft stands at a distance from its start",
+            f"{table}.position", "", "a probe on a shaft stands at a distance from its start",
             'write position = "50 mm", or name the bearing it sits in as its place',
         )  # fmt: skip
     elif on_shaft and entry.position is not None and entry.position > places.length(entry.place):
         yield Fault(
-            f"{at}.position", units.show(entry.position, "length"), f"is beyond the end of {entry.place}",
+            f"{table}.position", units.show(entry.position, "length"), f"is beyond the end of {entry.place}",
             f"write at most {units.show(places.length(entry.place), 'length')}",
         )  # fmt: skip
     elif entry.position is not None and not on_shaft:
         yield Fault(
-            f"{at}.position", units.show(entry.position, "length"), "is of a shaft displacement on a shaft",
+            f"{table}.position", units.show(entry.position, "length"), "is of a shaft displacement on a shaft",
             "remove the key, or name a shaft as its place",
         )  # fmt: skip
 
 
-def modal_faults(at: str, entry: ChannelTable) -> Iterator[Fault]:
+def modal_faults(table: str, entry: ChannelTable) -> Iterator[Fault]:
     """Order and torque of a resonance speed, and the range in which a mode is looked for."""
     said = entry.quantity.replace("_", " ")
     if entry.quantity == "resonance_speed":
         if entry.orders is None or len(entry.orders) != 1 or not entry.orders[0] > 0.0:
             given = "" if entry.orders is None else str(list(entry.orders))
             yield Fault(
-                f"{at}.orders", given, "a resonance speed is where one order meets a mode",
+                f"{table}.orders", given, "a resonance speed is where one order meets a mode",
                 "write the order that was tracked, above 0, e.g. orders = [28]",
             )  # fmt: skip
         if entry.torque is None:
             yield Fault(
-                f"{at}.torque", "", "teeth are as stiff as the torque of the sweep presses them together",
+                f"{table}.torque", "", "teeth are as stiff as the torque of the sweep presses them together",
                 'write the bracing torque of its sweeps, e.g. torque = "180 N m"',
             )  # fmt: skip
     elif entry.torque is not None:
-        yield Fault(f"{at}.torque", units.show(entry.torque, "torque"), f"{said} has no torque of its own",
+        yield Fault(f"{table}.torque", units.show(entry.torque, "torque"), f"{said} has no torque of its own",
                     "remove the key; operating points state theirs")  # fmt: skip
     if entry.search_range is None:
         return
     if entry.quantity not in MODAL_QUANTITIES:
-        yield Fault(f"{at}.search_range", "", f"{said} is not looked for", "remove the key")
+        yield Fault(f"{table}.search_range", "", f"{said} is not looked for", "remove the key")
         return
     try:
         low, high = (units.parse(text, CHANNELS[entry.quantity].kind) for text in entry.search_range)
     except units.QuantityError as error:
-        yield Fault(f"{at}.search_range", written(", ".join(entry.search_range)), error.problem, error.remedy)
+        yield Fault(
+            f"{table}.search_range", written(", ".join(entry.search_range)), error.problem, error.remedy
+        )
         return
     if not 0.0 <= low < high:
         yield Fault(
-            f"{at}.search_range", written(", ".join(entry.search_range)), "does not ascend",
+            f"{table}.search_range", written(", ".join(entry.search_range)), "does not ascend",
             "write the least reading, then the greatest",
         )  # fmt: skip
 

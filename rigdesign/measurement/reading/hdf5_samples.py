@@ -79,11 +79,11 @@ def read_datasets(path: Path, limit: float, wanted: Collection[str]) -> tuple[tu
         raise OSError(done.stderr.decode(errors="replace").strip()[-300:] or f"status {done.returncode}")
     head, _, samples = done.stdout.partition(b"\n")
     names, rows = json.loads(head)
-    found, start = [], 0
+    datasets, start = [], 0
     for name, attributes, time, dtype, size in rows:
-        found.append(Dataset(name, attributes, time, dtype, samples[start : start + size]))
+        datasets.append(Dataset(name, attributes, time, dtype, samples[start : start + size]))
         start += size
-    return tuple(names), found
+    return tuple(names), datasets
 
 
 def write_datasets(path: str, limit: float, wanted: Collection[str]) -> None:
@@ -94,7 +94,7 @@ def write_datasets(path: str, limit: float, wanted: Collection[str]) -> None:
         datasets = dict(_columns(file))
         times = {}
         for name in datasets:
-            if any(is_meant(name, one) for one in wanted):
+            if any(is_meant(name, signal) for signal in wanted):
                 group = name.rpartition("/")[0]
                 near = (f"{group}/{time}" if group else time for time in TIME_NAMES)
                 times[name] = next((time for time in near if time in datasets), "")
@@ -121,7 +121,7 @@ def _columns(file: Any) -> Iterator[tuple[str, tuple[Any, str]]]:
     file.visit(lambda key: names.append(key) if isinstance(file[key], h5py.Dataset) else None)
     for key in names:
         columns = file[key].dtype.names or ("",)
-        yield from ((f"{key}/{one}" if one else key, (file[key], one)) for one in columns)
+        yield from ((f"{key}/{column}" if column else key, (file[key], column)) for column in columns)
 
 
 def _samples(place: str, dataset: Any, column: str, *, is_time: bool) -> Any:
@@ -139,7 +139,7 @@ def _samples(place: str, dataset: Any, column: str, *, is_time: bool) -> Any:
     if values.dtype.kind in "fiub":
         return np.asarray(values, dtype=float)
     if is_time and values.dtype.kind in "OSU":
-        texts = [one.decode() if isinstance(one, bytes) else str(one) for one in values]
+        texts = [cell.decode() if isinstance(cell, bytes) else str(cell) for cell in values]
         return np.array([text.removesuffix("Z") for text in texts], dtype="datetime64[ns]")
     raise RefusedError(place, f"holds {values.dtype}, no numbers", "export it as numbers")
 
@@ -148,16 +148,16 @@ def _attributes(dataset: Any) -> dict[str, Any]:
     """Single numbers and texts that are said of a dataset, by itself, its group or the file."""
     import numpy as np
 
-    found: dict[str, Any] = {}
+    attributes: dict[str, Any] = {}
     for level in (dataset.file.attrs, dataset.parent.attrs, dataset.attrs):
         if any(key in level for key in SPACED):
-            found = {key: value for key, value in found.items() if key not in SPACED}
+            attributes = {key: value for key, value in attributes.items() if key not in SPACED}
         for key, value in level.items():
             single = np.ravel(value)
             if single.size == 1:
                 plain = single[0].item() if hasattr(single[0], "item") else single[0]
-                found[key] = plain.decode(errors="replace") if isinstance(plain, bytes) else plain
-    return {key: value for key, value in found.items() if isinstance(value, str | int | float)}
+                attributes[key] = plain.decode(errors="replace") if isinstance(plain, bytes) else plain
+    return {key: value for key, value in attributes.items() if isinstance(value, str | int | float)}
 
 
 def _check_stored(place: str, dataset: Any) -> None:

@@ -368,10 +368,10 @@ class MeasurementSet:
     @cached_property
     def by_channel(self) -> Mapping[str, Mapping[Feature, NDArray[np.float64]]]:
         """The readings of each channel; of one without any an empty mapping."""
-        found: dict[str, dict[Feature, NDArray[np.float64]]] = {name: {} for name in self.channels}
+        readings: dict[str, dict[Feature, NDArray[np.float64]]] = {name: {} for name in self.channels}
         for feature, values in self.readings.items():
-            found.setdefault(feature.channel, {})[feature] = values
-        return found
+            readings.setdefault(feature.channel, {})[feature] = values
+        return readings
 
     @property
     def settings(self) -> tuple[OperatingCondition, ...]:

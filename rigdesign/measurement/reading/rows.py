@@ -111,35 +111,35 @@ class Rows:
 
     def impossible(self, name: str, point: str) -> list[int]:
         """Rows of a point with a reading in this column that its quantity cannot have."""
-        found = set(self._impossible.get(name, ()))
-        return [row for row in self.rows_of(point) if row in found] if found else []
+        impossible = set(self._impossible.get(name, ()))
+        return [row for row in self.rows_of(point) if row in impossible] if impossible else []
 
     def impossible_cells(self, name: str, rows: Sequence[int], measured: Measured, unit: str) -> str:
         """Line, column and value of the first of such rows, and what is wrong with it."""
-        at = f"{self.table.file} line {self.table.lines[rows[0]]}, {name}"
+        cell_place = f"{self.table.file} line {self.table.lines[rows[0]]}, {name}"
         cell = written(self.table.column(name)[rows[0]].strip())
-        return f"{at} = {cell}: {impossible_text(measured, unit, len(rows))}"
+        return f"{cell_place} = {cell}: {impossible_text(measured, unit, len(rows))}"
 
     def scalars(
         self, channels: Mapping[str, MeasuredChannel], points: Sequence[MeasuredPoint]
     ) -> dict[Feature, NDArray[np.float64]]:
         """Readings of the columns by feature; the column of an order channel is its mean."""
-        found: dict[Feature, NDArray[np.float64]] = {}
+        readings: dict[Feature, NDArray[np.float64]] = {}
         for name, channel in channels.items():
             if channel.channel.quantity == "root_strain":
-                found |= self._windows(channel.channel, points)
+                readings |= self._windows(channel.channel, points)
                 continue
             if name not in self._columns:
                 continue
             if channel.channel.quantity in STANDING_QUANTITIES:
                 values = self._columns[name]
-                found[Feature(name, "")] = values[np.isfinite(values)]
+                readings[Feature(name, "")] = values[np.isfinite(values)]
                 continue
             if channel.channel.quantity in ORDER_QUANTITIES and 0.0 not in channel.channel.orders:
                 continue
             for point in points:
-                found[Feature(name, point.name)] = self._columns[name][self.rows_of(point.name)]
-        return found
+                readings[Feature(name, point.name)] = self._columns[name][self.rows_of(point.name)]
+        return readings
 
     def _windows(
         self, channel: Channel, points: Sequence[MeasuredPoint]
@@ -155,12 +155,12 @@ class Rows:
     def findings(self, channels: Mapping[str, MeasuredChannel]) -> list[DataFinding]:
         """What the table holds that is not used, readings that cannot be, and a last row that was cut."""
         known = {*KEYS, *self._document.settings, *channels}
-        for name, one in channels.items():
-            known |= set(window_columns(name, one.channel.windows))
+        for name, channel in channels.items():
+            known |= set(window_columns(name, channel.channel.windows))
         if self._timed:
             known.add(TIME)
         unused = [name for name in self.table.names if name not in known]
-        found = [
+        findings = [
             DataFinding(
                 id="impossible_reading", weight="dropped", channels=(name,),
                 points=tuple(dict.fromkeys(self.points[row] for row in rows)),
@@ -168,15 +168,15 @@ class Rows:
             )
             for name, rows in self._impossible.items() if name in channels
         ]  # fmt: skip
-        found += self._thousands()
+        findings += self._thousands()
         if unused:
             names = ", ".join(unused[:SHOWN]) + (f" and {len(unused) - SHOWN} more" if unused[SHOWN:] else "")
             text = f"{self.table.file}: no channel is described of column {names}; add [channels.{unused[0]}] to use it"
-            found.append(DataFinding(id="unused_column", weight="note", text=text))
+            findings.append(DataFinding(id="unused_column", weight="note", text=text))
         if self.table.cut:
             text = f"{self.table.file} {self.table.cut}; export it again"
-            found.append(DataFinding(id="cut_file", weight="dropped", text=text))
-        return found
+            findings.append(DataFinding(id="cut_file", weight="dropped", text=text))
+        return findings
 
     def _thousands(self) -> Iterator[DataFinding]:
         """Numbers such as 2.871 that fit their column, where no other has three decimals, as 2871 only."""
@@ -194,11 +194,11 @@ class Rows:
             for row in sorted(grouped) if middle > 0.0 else ():
                 if abs(math.log(1e3 * shown[row] / middle)) > 0.5 * abs(math.log(shown[row] / middle)):
                     continue
-                at = f"{self.table.file} line {self.table.lines[row]}, {name} = {written(cells[row])}"
+                cell_place = f"{self.table.file} line {self.table.lines[row]}, {name} = {written(cells[row])}"
                 yield DataFinding(
                     id="thousands", weight="suspect", channels=(name,), points=(self.points[row],),
-                    text=f"{at}: the rest of its column is about {middle:.4g}, {1e3 * shown[row]:.6g} would fit it, a "
-                    f'factor of 1000; look whether its sign parts thousands (data.decimal = "{decimal}")',
+                    text=f"{cell_place}: the rest of its column is about {middle:.4g}, {1e3 * shown[row]:.6g} would "
+                    f'fit it, a factor of 1000; look whether its sign parts thousands (data.decimal = "{decimal}")',
                 )  # fmt: skip
 
     def _read_keys(self) -> tuple[tuple[str, ...], tuple[int, ...], list[Fault]]:
@@ -277,13 +277,13 @@ class Rows:
     def _unit_fault(self, name: str, key: str, kind: str, spelled: str) -> list[Fault]:
         """The unit above a column must be the one measurement.toml states."""
         said = self.table.unit(name).strip().strip("[]()")
-        at = f"{self.table.file} line 2, {name}"
+        place = f"{self.table.file} line 2, {name}"
         if not said:
-            return [Fault(at, "", "the column has no unit", f'write "{spelled}"')]
+            return [Fault(place, "", "the column has no unit", f'write "{spelled}"')]
         if not same_worth(said, spelled, kind):
             return [
                 Fault(
-                    at,
+                    place,
                     written(said),
                     f'{key}.unit says "{spelled}"',
                     "correct what is wrong; nothing is converted",
@@ -408,7 +408,7 @@ def read_orders(
     for name in ("repeat", "order", "real", "imaginary"):
         values[name], wrong = numbers(table, name, document.data.decimal)
         faults += wrong
-    found: dict[Feature, NDArray[np.float64]] = {}
+    by_feature: dict[Feature, NDArray[np.float64]] = {}
     written_at: dict[tuple[Feature, int], int] = {}
     unused: dict[str, set[float]] = {}
     orphans = 0
@@ -418,21 +418,23 @@ def read_orders(
     places = zip(table.lines, table.column("point"), table.column("channel"))
     for row, (line, point, name) in enumerate(places):
         point, name = point.strip(), name.strip()
-        at = f"{table.file} line {line}"
+        row_place = f"{table.file} line {line}"
         if rows.table.cut and not _has(rows, point, values["repeat"][row]):
             orphans += 1
             continue
         if point not in points:
-            faults.append(unknown(f"{at}, point", point, rows.names, f"point in {rows.table.file}"))
+            faults.append(unknown(f"{row_place}, point", point, rows.names, f"point in {rows.table.file}"))
             continue
         if name not in order_channels:
-            faults.append(unknown(f"{at}, channel", name, order_channels, "channel that is read by orders"))
+            faults.append(
+                unknown(f"{row_place}, channel", name, order_channels, "channel that is read by orders")
+            )
             continue
         order, repeat = values["order"][row], values["repeat"][row]
         place = rows.place(point, int(repeat)) if math.isfinite(repeat) and repeat == round(repeat) else None
         if place is None or not order >= 0.0:
             faults.append(
-                Fault(at, written(f"repeat {repeat:g}, order {order:g}"),
+                Fault(row_place, written(f"repeat {repeat:g}, order {order:g}"),
                       f"no such repeat of {point} in {rows.table.file}, or an order below zero", "correct the row")
             )  # fmt: skip
             continue
@@ -450,7 +452,7 @@ def read_orders(
             if (feature, place) in written_at:
                 faults.append(
                     Fault(
-                        at,
+                        row_place,
                         f"{name}, order {order:g}",
                         f"stands in line {written_at[feature, place]}, too",
                         "remove one",
@@ -458,10 +460,10 @@ def read_orders(
                 )
                 break
             written_at[feature, place] = line
-            readings = found.setdefault(feature, np.full(len(rows.rows_of(point)), np.nan))
+            readings = by_feature.setdefault(feature, np.full(len(rows.rows_of(point)), np.nan))
             reading = np.array(to_si(values[column][row], kind, unit))
             if impossible(reading, CHANNELS[quantity]):
-                wrong_parts.setdefault(name, []).append(f"{at}, {column} = {values[column][row]:g}")
+                wrong_parts.setdefault(name, []).append(f"{row_place}, {column} = {values[column][row]:g}")
             else:
                 readings[place] = reading
     if faults:
@@ -478,7 +480,7 @@ def read_orders(
                 + impossible_text(CHANNELS[channels[name].channel.quantity], channels[name].unit, len(parts)))
         for name, parts in wrong_parts.items()
     )  # fmt: skip
-    findings.extend(_gaps(found, rows.names, table.file))
+    findings.extend(_gaps(by_feature, rows.names, table.file))
     if orphans:
         findings.append(
             DataFinding(id="cut_file", weight="dropped",
@@ -488,7 +490,7 @@ def read_orders(
     if table.cut:
         text = f"{table.file} {table.cut}; export it again"
         findings.append(DataFinding(id="cut_file", weight="dropped", text=text))
-    return found
+    return by_feature
 
 
 def _has(rows: Rows, point: str, repeat: float) -> bool:
@@ -496,14 +498,14 @@ def _has(rows: Rows, point: str, repeat: float) -> bool:
 
 
 def _gaps(
-    found: Mapping[Feature, NDArray[np.float64]], points: Sequence[str], file: str
+    by_feature: Mapping[Feature, NDArray[np.float64]], points: Sequence[str], file: str
 ) -> Iterator[DataFinding]:
     """Orders that stand in the table at some points and repeats, but not at all."""
-    lines = dict.fromkeys((one.channel, one.order, one.part) for one in found)
+    lines = dict.fromkeys((feature.channel, feature.order, feature.part) for feature in by_feature)
     missing: dict[str, list[str]] = {}
     for channel, order, part in lines:
         for point in points:
-            readings = found.get(Feature(channel, point, order, part))
+            readings = by_feature.get(Feature(channel, point, order, part))
             if readings is None or not np.isfinite(readings).all():
                 missing.setdefault(channel, []).append(point)
     for channel, where in missing.items():

@@ -157,24 +157,24 @@ def _placed(
     """The wanted signals, those of ``timed`` in the time of the first of them."""
     faults: list[Fault] = []
     chosen: dict[str, tuple[_Column, _Axis]] = {}
-    for one in wanted:
+    for signal in wanted:
         try:
-            column = _meant(file, one, columns)
+            column = _meant(file, signal, columns)
             if column is not None:
-                chosen[one] = column, _axis(f"{file}, {one}", column, data)
+                chosen[signal] = column, _axis(f"{file}, {signal}", column, data)
         except MeasurementError as error:
             faults += error.faults
-    related = {one: axis for one, (_, axis) in chosen.items() if timed is None or one in timed}
+    related = {signal: axis for signal, (_, axis) in chosen.items() if timed is None or signal in timed}
     faults += _apart(file, related)
     if faults:
         raise MeasurementError(faults)
     signals = Signals()
     first = min((axis.start for axis in related.values() if axis.start is not None), default=None)
-    for one, (column, axis) in chosen.items():
+    for signal, (column, axis) in chosen.items():
         time = axis.time
-        if first is not None and one in related:
+        if first is not None and signal in related:
             time = time + (axis.start - first) / np.timedelta64(1, "s")
-        signals[one] = Signal(time, np.asarray(column.samples, dtype=float), column.unit)
+        signals[signal] = Signal(time, np.asarray(column.samples, dtype=float), column.unit)
     return signals
 
 
@@ -191,64 +191,68 @@ def _meant(file: str, wanted: str, columns: Iterable[_Column]) -> _Column | None
     return meant[0] if meant else None
 
 
-def _axis(at: str, column: _Column, data: DataSection) -> _Axis:
+def _axis(place: str, column: _Column, data: DataSection) -> _Axis:
     """Time of a signal, by its group's signal of times or by its sampling rate."""
     count = len(column.samples)
     if column.samples.dtype.kind not in "fiub" or column.samples.ndim != 1:
-        raise refused(at, f"holds {column.samples.dtype}, no numbers over time", "export it as numbers")
+        raise refused(place, f"holds {column.samples.dtype}, no numbers over time", "export it as numbers")
     if count < 2:
-        raise refused(at, f"holds {count} samples", "name a signal over time")
+        raise refused(place, f"holds {count} samples", "name a signal over time")
     known, start = column.attributes, None
     marks = {key: value for key, value in known.items() if PLACES_IN_TIME.search(key)}
-    step = _step(at, known, data)
+    step = _step(place, known, data)
     time = column.time if column.time is not None and len(column.time) == count else None
     if time is not None and time.dtype.kind == "M":
         start, time = time[0], (time - time[0]) / np.timedelta64(1, "s")
     elif time is not None:
-        time = np.asarray(time, dtype=float) * _unit_of_time(at, column.time_unit, data)
+        time = np.asarray(time, dtype=float) * _unit_of_time(place, column.time_unit, data)
     if step is not None and time is not None and abs((count - 1) * step / np.ptp(time) - 1.0) > SPACING_OFF:
         raise refused(
-            at, f"lasts {(count - 1) * step:g} s by its sampling rate, {np.ptp(time):g} s by its signal of times",
+            place, f"lasts {(count - 1) * step:g} s by its sampling rate, {np.ptp(time):g} s by its signal of times",
             "correct the wrong one or its unit",
         )  # fmt: skip
     if time is None and step is not None:
-        offset = _number(at, "wf_start_offset", marks.pop("wf_start_offset", 0.0))
-        time = offset * _unit_of_time(at, _step_unit(known), data) + step * np.arange(count)
+        offset = _number(place, "wf_start_offset", marks.pop("wf_start_offset", 0.0))
+        time = offset * _unit_of_time(place, _step_unit(known), data) + step * np.arange(count)
         for key in STARTS:
             if (stamp := _start(marks.get(key))) is not None:
                 del marks[key]
                 start = None if stamp == NO_START else stamp
     if time is None:
         raise refused(
-            at, "neither a sampling rate nor a signal 'time' of the same length",
+            place, "neither a sampling rate nor a signal 'time' of the same length",
             "export it with wf_increment (TDMS), the attribute sample_rate (HDF5) or a signal 'time'",
         )  # fmt: skip
     if not np.all(np.diff(time) > 0.0):
-        raise refused(at, "its time does not increase", "export it with a sampling rate or time")
+        raise refused(place, "its time does not increase", "export it with a sampling rate or time")
     if not np.abs(time[[0, -1]]).max() <= LONGEST:
-        raise refused(at, f"its time reaches {time[-1]:.3g} s", "correct its time, or state data.time_unit")
+        raise refused(
+            place, f"its time reaches {time[-1]:.3g} s", "correct its time, or state data.time_unit"
+        )
     return _Axis(time=np.asarray(time, dtype=float), start=start, marks=marks)
 
 
-def _step(at: str, known: Mapping[str, Any], data: DataSection) -> float | None:
+def _step(place: str, known: Mapping[str, Any], data: DataSection) -> float | None:
     """Time from sample to sample [s] by the attributes of a signal; None where they do not say."""
     for key in ("wf_increment", "dt"):
-        if key in known and (step := _number(at, key, known[key])) > 0.0:
-            step *= _unit_of_time(at, _step_unit(known), data)
+        if key in known and (step := _number(place, key, known[key])) > 0.0:
+            step *= _unit_of_time(place, _step_unit(known), data)
             if not FASTEST <= step <= SLOWEST:
                 remedy = f"write {FASTEST:g} to {SLOWEST:g} s"
-                raise refused(at, f"{step:g} s from sample to sample", remedy)
+                raise refused(place, f"{step:g} s from sample to sample", remedy)
             return step
     if "sample_rate" not in known:
         return None
-    rate, unit = _number(at, "sample_rate", known["sample_rate"]), str(known.get("sample_rate_unit", "Hz"))
+    rate, unit = _number(place, "sample_rate", known["sample_rate"]), str(known.get("sample_rate_unit", "Hz"))
     spelled = accepted_unit(unit, "frequency")
     if spelled is None:
-        raise refused(at, f'sample_rate_unit = "{unit}" {unit_problem(unit, "frequency")}', "write Hz or kHz")
+        raise refused(
+            place, f'sample_rate_unit = "{unit}" {unit_problem(unit, "frequency")}', "write Hz or kHz"
+        )
     rate *= units.worth("frequency", spelled)[0]
     if not 1.0 / SLOWEST <= rate <= 1.0 / FASTEST:
         limits = f"{1.0 / SLOWEST:g} to {1.0 / FASTEST:g} Hz"
-        raise refused(at, f"sample_rate = {rate:g}, outside {limits}", "correct the attribute")
+        raise refused(place, f"sample_rate = {rate:g}, outside {limits}", "correct the attribute")
     return 1.0 / rate
 
 
@@ -256,23 +260,23 @@ def _step_unit(known: Mapping[str, Any]) -> str:
     return next((str(known[key]) for key in STEP_UNITS if key in known), "")
 
 
-def _number(at: str, key: str, value: Any) -> float:
+def _number(place: str, key: str, value: Any) -> float:
     try:
         return float(value)
     except (TypeError, ValueError):
-        raise refused(at, f"{key} = {written(str(value))} is no number", "correct the attribute") from None
+        raise refused(place, f"{key} = {written(str(value))} is no number", "correct the attribute") from None
 
 
-def _unit_of_time(at: str, said: str, data: DataSection) -> float:
+def _unit_of_time(place: str, said: str, data: DataSection) -> float:
     """Worth [s] of the unit of a time axis: of the file, else as declared, else seconds."""
     plain = said.strip().strip("[]()")
     unit = accepted_unit(SPELLED.get(plain.lower(), plain) or data.time_unit or "s", AXIS)
     if unit is None and (unit := data.time_unit) is None:
         problem = f"unit {written(said)} of its time {unit_problem(plain, AXIS)}"
-        raise refused(at, problem, "correct it, or state data.time_unit if the file is right")
+        raise refused(place, problem, "correct it, or state data.time_unit if the file is right")
     if plain and data.time_unit is not None and not same_worth(unit, data.time_unit, AXIS):
         problem = f'its time is in "{plain}", data.time_unit says "{data.time_unit}"'
-        raise refused(at, problem, "correct what is wrong")
+        raise refused(place, problem, "correct what is wrong")
     return units.worth(AXIS, unit)[0]
 
 
@@ -309,7 +313,7 @@ def _tdms(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> 
     from nptdms.log import log_manager
 
     log_manager.set_level(logging.ERROR)
-    found: list[_Column] = []
+    columns: list[_Column] = []
     names: list[str] = []
     with path.open("rb") as stream, TdmsFile.open(stream) as file:
         channels = [channel for group in file.groups() for channel in group.channels()]
@@ -319,20 +323,20 @@ def _tdms(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> 
             raise refused(name, f"its header states {stated} samples, the file has {size} bytes", AGAIN)
         if file.file_status.incomplete_final_segment:
             lengths = (file.file_status.channel_statuses or {}).items()
-            short = [f"{path} {one.read_length} of {one.expected_length}" for path, one in lengths]
+            short = [f"{path} {status.read_length} of {status.expected_length}" for path, status in lengths]
             raise refused(
                 name,
                 f"is shorter than its header states, samples of the last segment: {', '.join(short)}",
                 AGAIN,
             )
         for group in file.groups():
-            time = next((one for one in group.channels() if one.name in TIME_NAMES), None)
+            time = next((channel for channel in group.channels() if channel.name in TIME_NAMES), None)
             for channel in group.channels():
                 names.append(f"{group.name}/{channel.name}")
-                if channel is time or not any(is_meant(names[-1], one) for one in wanted):
+                if channel is time or not any(is_meant(names[-1], signal) for signal in wanted):
                     continue
                 attributes = {**group.properties, **channel.properties}
-                found.append(
+                columns.append(
                     _Column(
                         name=names[-1], samples=np.asarray(channel[:]), attributes=attributes,
                         unit=str(channel.properties.get("unit_string", "")),
@@ -340,7 +344,7 @@ def _tdms(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> 
                         time_unit="" if time is None else str(time.properties.get("unit_string", "")),
                     )
                 )  # fmt: skip
-    return tuple(names), found
+    return tuple(names), columns
 
 
 def _hdf5(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> _Read:
@@ -350,14 +354,17 @@ def _hdf5(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> 
         raise refused(
             f"{name}, {error.place}" if error.place else name, error.problem, error.remedy
         ) from None
-    arrays = {one.name: np.frombuffer(one.samples, dtype=one.dtype) for one in datasets}
-    said = {one.name: str(one.attributes.get("units", one.attributes.get("unit", ""))) for one in datasets}
+    arrays = {dataset.name: np.frombuffer(dataset.samples, dtype=dataset.dtype) for dataset in datasets}
+    said = {
+        dataset.name: str(dataset.attributes.get("units", dataset.attributes.get("unit", "")))
+        for dataset in datasets
+    }
     return names, [
         _Column(
-            name=one.name, samples=arrays[one.name], unit=said[one.name], attributes=one.attributes,
-            time=arrays.get(one.time), time_unit=said.get(one.time, ""),
+            name=dataset.name, samples=arrays[dataset.name], unit=said[dataset.name], attributes=dataset.attributes,
+            time=arrays.get(dataset.time), time_unit=said.get(dataset.time, ""),
         )
-        for one in datasets if one.name.rpartition("/")[2] not in TIME_NAMES
+        for dataset in datasets if dataset.name.rpartition("/")[2] not in TIME_NAMES
     ]  # fmt: skip
 
 
@@ -373,17 +380,17 @@ def _mdf(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> _
             name, "MDF4 needs asammdf, which is not installed", "pip install rigdesign[mdf]"
         ) from None
 
-    found: list[_Column] = []
+    columns: list[_Column] = []
     names: list[str] = []
     with MDF(path) as file:
         for group, entry in enumerate(file.groups):
-            own = entry.channel_group.acq_name or entry.channel_group.comment or f"group {group}"
-            master = next((one for one in entry.channels if one.channel_type in MASTERS), None)
+            label = entry.channel_group.acq_name or entry.channel_group.comment or f"group {group}"
+            master = next((channel for channel in entry.channels if channel.channel_type in MASTERS), None)
             for index, channel in enumerate(entry.channels):
                 if channel is master:
                     continue
-                names.append(f"{own}/{channel.name}")
-                if not any(is_meant(names[-1], one) for one in wanted):
+                names.append(f"{label}/{channel.name}")
+                if not any(is_meant(names[-1], asked) for asked in wanted):
                     continue
                 if master is None or master.sync_type != 1:
                     raise refused(
@@ -391,13 +398,13 @@ def _mdf(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> _
                     )
                 signal = file.get(group=group, index=index)
                 time = np.asarray(signal.timestamps)  # of all groups from the start of the measurement
-                found.append(
+                columns.append(
                     _Column(
                         name=names[-1], samples=np.asarray(signal.samples), unit=signal.unit or "", time=time,
                         time_unit=master.unit or "",
                     )
                 )  # fmt: skip
-    return tuple(names), found
+    return tuple(names), columns
 
 
 def _csv(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> _Read:
@@ -413,20 +420,20 @@ def _csv(path: Path, name: str, data: DataSection, wanted: Collection[str]) -> _
     if time is None:
         times, faults = numbers(table, key, data.decimal)
         time = np.array(times)
-    found: list[_Column] = []
+    columns: list[_Column] = []
     for column in names:
-        if any(is_meant(column, one) for one in wanted):
+        if any(is_meant(column, signal) for signal in wanted):
             values, wrong = numbers(table, column, data.decimal)
             faults += wrong
             unit = table.unit(column).strip("[]()")
-            found.append(
+            columns.append(
                 _Column(
                     name=column, samples=np.array(values), unit=unit, time=time, time_unit=table.unit(key)
                 )
             )
     if faults:
         raise MeasurementError(faults)
-    return names, found
+    return names, columns
 
 
 # The angle of the reference gear over time, from pulses or an encoder; lost pulses are found and filled.
@@ -500,11 +507,11 @@ def turn_angle(tach: Tach, signals: Signals, start_turn: float | None) -> TurnAn
         )
     marks = None if tach.index is None else rising_edges(_named(signals, tach.index))
     pulses = _pulses_per_turn(tach, counts, kept, marks)
-    found = TurnAngle(kept, 2.0 * math.pi * counts / pulses, start_turn is not None, lost, surplus)
+    turn = TurnAngle(kept, 2.0 * math.pi * counts / pulses, start_turn is not None, lost, surplus)
     if pulses > 1:
-        found = _indexed(tach, found, marks)
+        turn = _indexed(tach, turn, marks)
     whole = 0.0 if start_turn is None else 2.0 * math.pi * start_turn
-    return TurnAngle(found.time, found.angle + tach.zero + whole, found.absolute, lost, surplus)
+    return TurnAngle(turn.time, turn.angle + tach.zero + whole, turn.absolute, lost, surplus)
 
 
 def rising_edges(signal: Signal) -> Array:
@@ -580,21 +587,21 @@ def _pulses_per_turn(tach: Tach, counts: Array, kept: Array, marks: Array | None
     return stated or counted or 1
 
 
-def _indexed(tach: Tach, found: TurnAngle, marks: Array | None) -> TurnAngle:
+def _indexed(tach: Tach, turn: TurnAngle, marks: Array | None) -> TurnAngle:
     """Zero of the angle at the index pulse."""
     if marks is None:
         raise TachError(
             f"{tach.pulses_per_turn} pulses a turn say nothing of where zero is; name data.tach.index, a signal with "
             "one pulse a turn"
         )
-    marks = found.at(marks)
+    marks = turn.at(marks)
     marks = marks[np.isfinite(marks)]
     if not marks.size:
         raise TachError(f"{tach.index}: no index pulse within the tach pulses; look at its cable")
     zero = float(np.angle(np.mean(np.exp(1j * marks))))
     first = marks[0] - zero
     shift = zero + 2.0 * math.pi * round(first / (2.0 * math.pi))
-    return TurnAngle(found.time, found.angle - shift, found.absolute)
+    return TurnAngle(turn.time, turn.angle - shift, turn.absolute)
 
 
 def _encoder(tach: Tach, signal: Signal, start_turn: float | None) -> TurnAngle:

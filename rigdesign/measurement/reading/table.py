@@ -178,19 +178,19 @@ def time_stamp(text: str) -> "np.datetime64 | None":
 
 def time_stamps(cells: Sequence[str]) -> "NDArray[np.datetime64] | None":
     """(n,) time stamps of a column, NaT where missing; None where a cell is something else, or none is one."""
-    found = [
+    parsed = [
         np.datetime64("NaT", "us") if cell.strip().lower() in MISSING else time_stamp(cell) for cell in cells
     ]
-    stamps = np.array([stamp for stamp in found if stamp is not None], dtype="datetime64[us]")
-    return stamps if len(stamps) == len(found) and not np.isnat(stamps).all() else None
+    stamps = np.array([stamp for stamp in parsed if stamp is not None], dtype="datetime64[us]")
+    return stamps if len(stamps) == len(parsed) and not np.isnat(stamps).all() else None
 
 
 def _text(path: Path, name: str, data: DataSection) -> str:
     encoding = "utf-8-sig" if data.encoding == "utf-8" else data.encoding
     try:
         content = path.read_bytes()
-        if (what := foreign(content)) is not None:
-            raise refused(name, f"is {what}, not a table of text", "export the sheet as CSV")
+        if (kind := foreign(content)) is not None:
+            raise refused(name, f"is {kind}, not a table of text", "export the sheet as CSV")
         text = content.decode(encoding)
     except OSError as error:
         raise refused(name, f"cannot be read: {error.strerror}", "check its rights") from None
@@ -214,16 +214,16 @@ def _cells(text: str, name: str, data: DataSection) -> list[tuple[int, list[str]
             )  # fmt: skip
         text = text[len(first) :]
     rows = csv.reader(io.StringIO(text, newline=""), delimiter=data.delimiter, strict=True)
-    found: list[tuple[int, list[str]]] = []
+    lines: list[tuple[int, list[str]]] = []
     line = 1
     try:
         for cells in rows:
             if any(cell.strip() for cell in cells):
-                found.append((line, cells))
+                lines.append((line, cells))
             line = rows.line_num + 1
     except csv.Error as error:
         raise refused(f"{name} line {line}", f"cannot be read: {error}", "correct it") from None
-    return [(line, cells) for line, cells in found if not _is_comment(cells)]
+    return [(line, cells) for line, cells in lines if not _is_comment(cells)]
 
 
 def _is_comment(cells: Sequence[str]) -> bool:
@@ -258,7 +258,10 @@ def _names(file: str, names: Sequence[str], data: DataSection) -> list[Fault]:
         if name and count > 1
     ]
     if len(names) == 1:
-        other = next((one for one in ";,\t" if one in names[0]), ";" if data.delimiter == "," else ",")
+        other = next(
+            (delimiter for delimiter in ";,\t" if delimiter in names[0]),
+            ";" if data.delimiter == "," else ",",
+        )
         faults.append(
             Fault(f"{file} line 1", written(names[0]), "only one column was found",
                   f'write data.delimiter = "{other}" if that parts the columns')
