@@ -1,12 +1,14 @@
-"""Checks of the shipped prototype by id."""
+"""Checks by id."""
 
-import json
-
+from rigdesign.case.model import Case
+from rigdesign.checks.registry import REGISTRY
 from rigdesign.results.check import Check, Verdict
-from tests.builders.paths import CASES
 
-PROTOTYPE = CASES / "uhcf_prototype"
-EXPECTED = json.loads((PROTOTYPE / "expected.json").read_text(encoding="utf-8"))
+
+def rule_ids(case: Case) -> set[str]:
+    """Ids of all checks of a case but those over time, known before it is solved."""
+    found = {rule.id for family in REGISTRY.families() for rule in family.rules(case)}
+    return {identity for identity in found if not identity.startswith("transient.")}
 
 
 def check(identity: str, source: str = "", verdict: Verdict = "pass") -> Check:

@@ -525,6 +525,9 @@ def make_result(**changes):
 
 
 def small_result(**changes):
-    """A result with few pictures, for tests that are not about them."""
-    without = {"dynamics": None, "expansion": [], "thermal": [], "fields": [], "coupling": [], "oil": []}
+    """A result without pictures, for tests that are not about them."""
+    without = {
+        "dynamics": None,
+        **{key: [] for key in ("losses", "expansion", "thermal", "fields", "coupling", "oil")},
+    }
     return make_result(**{**without, **changes})

@@ -18,6 +18,7 @@ from rigdesign.results.result import RunResult
 from rigdesign.run.main import run_case
 from rigdesign.studies.verdict_sensitivity import with_flips
 from tests.builders.paths import CASES
+from tests.builders.recorded_reads import recorded_run
 from thermal.fe.kernel_cache import cache_folder
 
 VARIABLE = "RIGDESIGN_TEST_RUN_FOLDER"
@@ -63,15 +64,22 @@ def shared(name: str, make: Callable[[], T]) -> T:
 
 
 def shipped_run(name: str) -> RunResult:
-    """A shipped case as `rigdesign check` computes it at its default fidelity."""
+    """A shipped case as `rigdesign check` computes it at its default fidelity; of another of its files
+    (``uhcf_main/fitted.toml``) without the inputs that would turn its verdict."""
+    follow_ups = {} if "/" in name else {"flips": with_flips}
     return shared(
-        f"{name}-shipped",
-        lambda: run_case(load_case(CASES / name), "standard", follow_ups={"flips": with_flips}),
+        f"{name.replace('/', '-')}-shipped",
+        lambda: run_case(load_case(CASES / name), "standard", follow_ups=follow_ups),
     )
 
 
 def quick_run(name: str, file: str = "case.toml") -> RunResult:
     """A shipped case at quick fidelity, without the inputs that would turn its verdict."""
+    return quick_run_and_idle(name, file)[0]
+
+
+def quick_run_and_idle(name: str, file: str = "case.toml") -> tuple[RunResult, tuple[str, ...]]:
+    """The same, and the numbers stated by the case that the run did not read."""
     return shared(
-        f"{name}-{Path(file).stem}-quick", lambda: run_case(load_case(CASES / name / file), "quick")
+        f"{name}-{Path(file).stem}-quick", lambda: recorded_run(load_case(CASES / name / file), "quick")
     )

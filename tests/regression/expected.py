@@ -3,7 +3,8 @@
     python -m tests.regression.expected [NAME ...] [--all]
 
 from the root of the project runs the named cases (all without a name) at their default fidelity, carries over every
-verdict, and every value outside its tolerance, with ``--all`` every one; the reasons stay. What it changed is printed,
+verdict, and every value outside its tolerance, with ``--all`` every one; the reasons stay. A check that does not apply
+has no entry. What it changed is printed,
 and the diff is to be read: a commit that moves a value says why, and a reason that no longer holds is written anew. A
 check that is new gets an empty reason, which tests/regression/test_cases.py refuses until it is written.
 """
@@ -28,7 +29,8 @@ ROUNDING = 5e-4
 DIGITS = 6
 
 Document = dict[str, Any]
-"""{verdict, checks: {id: {verdict, value, reason}}}; verdict: `Check.status`."""
+"""{verdict, checks: {id: {verdict, value, reason}}}, of the checks that apply; verdict: `Check.status`."""
+NOT_APPLICABLE = "not applicable"
 
 
 def read(name: str) -> Document:
@@ -49,7 +51,11 @@ def renewed(document: Document, verdict: str, checks: Sequence[Check], *, every:
     old = document["checks"]
     return {
         "verdict": verdict,
-        "checks": {check.id: _entry(old.get(check.id), check, every) for check in checks},
+        "checks": {
+            check.id: _entry(old.get(check.id), check, every)
+            for check in checks
+            if check.status != NOT_APPLICABLE
+        },
     }
 
 

@@ -2,21 +2,12 @@
 
 import pytest
 
-from rigdesign import load_case
-from rigdesign.results.result import RunResult
-from rigdesign.run.main import run_case
 from rigdesign.validation import published_rows
-from tests.builders.paths import CASES
 from tests.builders.shared_runs import shipped_run
 from tests.published.rows import moved
 from tests.published.table import topics
 
-
-def run(name: str) -> RunResult:
-    return run_case(load_case(CASES / name), "standard") if "/" in name else shipped_run(name)
-
-
-TOPICS = topics(run)
+TOPICS = topics(shipped_run)
 
 
 @pytest.mark.parametrize("title", TOPICS)

@@ -8,7 +8,7 @@ import pytest
 
 from rigdesign.case import Case, load_case
 from rigdesign.checks.assumptions import depends, is_under, with_assumptions
-from tests.builders.checks import EXPECTED, check, limit_of
+from tests.builders.checks import check, limit_of, rule_ids
 from tests.builders.paths import CASES
 
 PROTOTYPE = CASES / "uhcf_prototype"
@@ -26,7 +26,7 @@ def case() -> Case:
 
 
 def test_every_assumed_input_decides_a_check_or_is_known_to_decide_none(case: Case) -> None:
-    checks = [check(identity, limit_of(identity)) for identity in EXPECTED["checks"]]
+    checks = [check(identity, limit_of(identity)) for identity in rule_ids(case)]
     behind = {path for one in checks for path in with_assumptions(case, one).assumptions}
     idle = [record.path for record in case.assumptions if record.path not in behind]
     assert all(any(re.fullmatch(one, path) for path in idle) for one in NOTHING)

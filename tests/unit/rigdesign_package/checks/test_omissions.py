@@ -1,6 +1,5 @@
 """A check knows what its value leaves out: at best a warning that names it, for every check there is."""
 
-import json
 import math
 from dataclasses import replace
 from fnmatch import fnmatchcase
@@ -28,6 +27,7 @@ from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 from rigdesign.rig.model import Rig
 from rigdesign.run.main import run_case
+from tests.builders.checks import rule_ids
 from tests.builders.paths import CASES
 from tests.builders.shaft_weight import weight_on_bearing
 from tests.builders.warm_prototype import base, settled
@@ -72,8 +72,9 @@ def known_ids() -> set[str]:
     """Checks of all shipped cases by the keys of the table, and those over time."""
     found = set(TIMES)
     for name in shipped_cases():
-        parts = load_case(CASES / name).limits.bought_parts
-        for identity in json.loads((CASES / name / "expected.json").read_text(encoding="utf-8"))["checks"]:
+        case = load_case(CASES / name)
+        parts = case.limits.bought_parts
+        for identity in rule_ids(case):
             group, _, own = identity.partition(".")
             found.add(f"bought_part.{parts[own].quantity}" if group == "bought_part" else identity)
     return found

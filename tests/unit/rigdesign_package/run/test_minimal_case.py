@@ -9,7 +9,16 @@ from rigdesign.run.main import run_case
 from tests.builders.minimal_case import MINIMAL, MOST_LINES, minimal_case
 
 pytestmark = pytest.mark.whole_run
-NUMERICS = "\n[numerics]\ncurve_speeds = 20\n"
+NUMERICS = """
+[numerics]
+curve_speeds = 2
+curve_speed_start = "2200 rpm"
+curve_speed_end = "2300 rpm"
+[limits]
+standard_set = true
+bearing.start_torque_limit = "400 N m"
+"""
+"""The curve at its held speed, and no errors of checks at the lower speeds of its ramps."""
 
 
 @pytest.fixture(scope="module")

@@ -48,7 +48,7 @@ def test_a_defect_ends_a_command_with_70_and_a_file_that_shows_where(tmp_path, c
 @pytest.mark.whole_run
 def test_a_defect_in_a_worker_process_shows_its_traceback_here(tmp_path):
     with pytest.raises(PointDefectError) as stopped:
-        run_study(CURVES, VARY, tmp_path, run=defective, workers=2)
+        run_study(CURVES, VARY, tmp_path, run=defective, workers=1)
     assert "study_functions.py" in stopped.value.__notes__[0]
 
 

@@ -18,7 +18,16 @@ from rigdesign.studies import ledger as study_ledger
 from rigdesign.studies.grid import Variation, combinations, parse_variation
 from rigdesign.studies.ledger import Ledger, point_key
 from tests.builders.paths import ROOT
-from tests.builders.study import DRIVER, POINTS, ExampleCase, _events, _stored, run_example, run_study
+from tests.builders.study import (
+    DRIVER,
+    POINTS,
+    ExampleCase,
+    InProcess,
+    _events,
+    _stored,
+    run_example,
+    run_study,
+)
 
 pytestmark = pytest.mark.whole_run
 
@@ -182,7 +191,7 @@ def test_study_page_and_plot(study):
 def test_second_run_computes_nothing_and_writes_the_same(study):
     out, case, variations, first, _ = study
     before = {name: (out / name).read_bytes() for name in ("results.csv", "study.svg", "study.html", "log")}
-    again = run_study(case, variations, out, fidelity="quick", workers=1, run=run_example)
+    again = run_study(case, variations, out, fidelity="quick", run=run_example, executor=InProcess())
     assert (again.completed, again.reused) == (0, 3)
     assert again.points == first.points
     assert before == {name: (out / name).read_bytes() for name in before}
@@ -191,7 +200,9 @@ def test_second_run_computes_nothing_and_writes_the_same(study):
 def test_retry_computes_failed_points_only(study, tmp_path):
     out, case, variations, _, _ = study
     before = (out / "log").read_text().count("begin")
-    again = run_study(case, variations, out, fidelity="quick", workers=2, retry=True, run=run_example)
+    again = run_study(
+        case, variations, out, fidelity="quick", retry=True, run=run_example, executor=InProcess()
+    )
     assert (again.completed, again.reused) == (1, 2)
     assert (out / "log").read_text().count("begin") == before + 1
 
@@ -210,7 +221,7 @@ def test_a_point_that_kills_its_worker_costs_only_itself(tmp_path):
 def test_two_variations_make_a_grid_in_order(tmp_path):
     variations = ["oil.inlet=90:110:20 degC", "gear.width=7 mm,8 mm"]
     outcome = run_study(
-        ExampleCase(log=str(tmp_path / "log")), variations, tmp_path, workers=2, run=run_example
+        ExampleCase(log=str(tmp_path / "log")), variations, tmp_path, run=run_example, executor=InProcess()
     )
     assert [tuple(point.values.values()) for point in outcome.points] == [
         ("90 degC", "7 mm"), ("90 degC", "8 mm"), ("110 degC", "7 mm"), ("110 degC", "8 mm"),
@@ -237,7 +248,8 @@ def test_bad_calls(tmp_path):
 def test_killed_study_resumes_without_loss_or_repetition(tmp_path):
     """SIGKILL with points stored and others under way; the resumed study equals an undisturbed one."""
     script = tmp_path / "driver.py"
-    script.write_text(DRIVER.format(root=str(ROOT), values="oil.inlet=90:118:2 degC"))
+    values = "oil.inlet=90:118:2 degC"
+    script.write_text(DRIVER.format(root=str(ROOT), values=values))
     killed, undisturbed = tmp_path / "killed", tmp_path / "undisturbed"
 
     process = subprocess.Popen([sys.executable, str(script), str(killed)])
@@ -253,7 +265,8 @@ def test_killed_study_resumes_without_loss_or_repetition(tmp_path):
 
     begun_before = _events(log, "begin")
     subprocess.run([sys.executable, str(script), str(killed)], check=True)
-    subprocess.run([sys.executable, str(script), str(undisturbed)], check=True)
+    case = ExampleCase(log=str(tmp_path / "undisturbed.log"))
+    run_study(case, values, undisturbed, run=run_example, executor=InProcess())
     assert _events(log, "begin") - begun_before == POINTS - done_before
     for name in ("results.csv", "study.svg", "study.html"):
         assert (killed / name).read_bytes() == (undisturbed / name).read_bytes()
