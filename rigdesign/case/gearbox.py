@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from dynamics.losses.oil_jet import JET_ANGLES, OilJet
 from rigdesign.case.bearings import BearingInput
-from rigdesign.case.fields import Clearance, Name, Part, Share, Title, Torque, Usual, fault
+from rigdesign.case.fields import OF_HEAT, Clearance, Effect, Name, Part, Share, Title, Torque, Usual, fault
 from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.housing import Housing
 from rigdesign.case.losses import LossFactors
@@ -90,12 +90,17 @@ class Seals(Part):
     """Shaft that they seal."""
     kind: Literal["contactless", "radial_lip"] = "contactless"
     """What seals the shaft where it leaves the gearbox: a gap without contact, or a radial lip."""
-    radial_gap: Annotated[Clearance, Usual(1.5e-3, 0.03, "shaft diameter")]
+    radial_gap: Annotated[
+        Clearance, Usual(1.5e-3, 0.03, "shaft diameter"), Effect(checks=(), where=("bare", "torsional"))
+    ]
     """Half the difference of bore and shaft diameter as drawn; thermal expansion changes it."""
-    axial_travel: Annotated[Clearance, Usual("0.35 mm", "8 mm")]
+    axial_travel: Annotated[Clearance, Usual("0.35 mm", "8 mm"), Effect(checks=(), solved=())]
     """Axial movement of the shaft the seals take without touching."""
     rubbing_torque: Annotated[Torque, Usual(1e-5, 0.03, "test torque")] = 0.0
     """Friction torque of seals that touch, of all seals of the shaft together, on top of what ``kind`` loses."""
+
+
+OF_HOUSING = Effect(checks=("housing",), solved=("coupling",), through_heat=True)
 
 
 class Gearbox(Part):
@@ -109,26 +114,26 @@ class Gearbox(Part):
     """Gears by name."""
     meshes: Mapping[Name, GearMesh] = Field(min_length=1)
     """Meshes by name, each of two gears."""
-    oil: GearOil
+    oil: Annotated[GearOil, OF_HEAT]
     """Oil of the gears: injected at the meshes, or a sump into which they dip."""
     bearings: Mapping[Name, BearingInput] = Field(min_length=1)
     """Bearings by name."""
-    bearing_oil: BearingOil = SplashOil(lubrication="splash")
+    bearing_oil: Annotated[BearingOil, OF_HEAT] = SplashOil(lubrication="splash")
     """Oil of the bearings: fed to them, thrown on them by the gears, or grease."""
-    seals: Mapping[Name, Seals] = {}
+    seals: Annotated[Mapping[Name, Seals], OF_HOUSING] = {}
     """Seals by name, one entry a shaft."""
-    heat_split: HeatSplit
+    heat_split: Annotated[HeatSplit, Effect(checks=(), where=("bare",), through_heat=True)]
     """Shares of the losses that heat solid parts."""
-    loss_factors: LossFactors = LossFactors()
+    loss_factors: Annotated[LossFactors, OF_HEAT] = LossFactors()
     """Factors on the losses of this gearbox."""
-    oil_paths: OilPaths = OilPaths()
+    oil_paths: Annotated[OilPaths, OF_HEAT] = OilPaths()
     """Shares of the gear oil that take another way."""
-    oil_state: OilState = OilState()
+    oil_state: Annotated[OilState, OF_HEAT] = OilState()
     """How both oils differ from their data sheet."""
     rotation: Literal["clockwise", "anticlockwise"] = "clockwise"
     """Sense in which the pinion of the first mesh turns, seen from the front of the housing; the other gears follow.
     It says to which side an inclination of the warm axes across their plane loads the faces."""
-    housing: Housing | None = None
+    housing: Annotated[Housing, OF_HOUSING] | None = None
     """Geometry and boundary conditions; a gearbox without one has no temperature field."""
 
     @property

@@ -4,9 +4,8 @@ from collections.abc import Iterator
 
 from dynamics.vibration.schedule import RampLimits, ramp_rules
 from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT
-from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.omissions import warming
-from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
+from rigdesign.checks.registry import REGISTRY, SPEEDS, RuleFamily, Topic, Values
 from rigdesign.checks.rules import Comparison, hold, not_applicable
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.postprocessing.solved_rig import NO_LIMIT, SolvedRig

@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 from dynamics.rotor.rolling_state import STABILISED_TEMPERATURE, RollingState, rolling_state
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
-from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.omissions import HEAT, of_gearboxes
-from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
+from rigdesign.checks.registry import REGISTRY, SPEEDS, RuleFamily, Topic, Values
 from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import DEGREE_CELSIUS, HOUR, MICROMETRE, NUMBER, DisplayUnit

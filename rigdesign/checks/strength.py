@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from dynamics.rating.iso_rating import permissible_factors, root_stress
-from rigdesign.checks.influences import SPEEDS, Influence
+from rigdesign.case.fields import Influence
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.places import rig_gears, specimen_gears
-from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
+from rigdesign.checks.registry import LOADS, REGISTRY, SPEEDS, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated
 from rigdesign.postprocessing.gear_loads import application_factor, load_cycles, rated_cycles, rated_loads
 from rigdesign.postprocessing.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
