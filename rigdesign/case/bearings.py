@@ -16,8 +16,10 @@ from dynamics.rotor.journal_feed import Feed
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.fields import (
+    COUPLED,
     AssumptionRecord,
     Clearance,
+    Effect,
     Force,
     Gap,
     HeatTransferCoefficient,
@@ -27,17 +29,25 @@ from rigdesign.case.fields import (
     Mass,
     Name,
     Part,
-    Play,
     Share,
-    TorsionalDamping,
     Usual,
     kind_from,
 )
 from rigdesign.case.losses import LossFactor
-from rigdesign.case.rolling_bearing import BearingPlace, BearingSeats, RollingBearingInput
+from rigdesign.case.rolling_bearing import (
+    AxialPlay,
+    BearingPlace,
+    BearingSeats,
+    ConstantDrag,
+    Locating,
+    RollingBearingInput,
+)
 
 if TYPE_CHECKING:
     from dynamics.rotor.bearing import Bearing
+
+
+STATED = Effect(checks=(), where=("film",))
 
 
 class JournalBearingInput(Part):
@@ -51,13 +61,13 @@ class JournalBearingInput(Part):
     """End of the housing it sits in; the front is where x starts."""
     diameter: Annotated[Length, Usual(0.4, 2.5, "shaft diameter")]
     """Nominal diameter of the journal."""
-    width: Annotated[Length, Usual(0.15, 2.5, "bore of the bearing")]
+    width: Annotated[Length, Usual(0.15, 2.5, "bore of the bearing"), COUPLED]
     """Load-carrying width along the shaft."""
-    diametral_clearance: Annotated[Clearance, Usual(4e-4, 5e-3, "bore of the bearing")]
+    diametral_clearance: Annotated[Clearance, Usual(4e-4, 5e-3, "bore of the bearing"), COUPLED]
     """Bore minus journal, as drawn."""
-    locating: bool = False
+    locating: Locating = False
     """Fixes its shaft axially; one per shaft."""
-    axial_play: Annotated[Play, Usual("0.06 mm", "1.9 mm")] = 0.0
+    axial_play: AxialPlay = 0.0
     """Free axial travel of the shaft between a stop at this bearing and one at the other, as drawn: the thermal
     expansion of the shaft against the housing between them uses it up. Left out for a shaft with stops at one end
     only."""
@@ -65,20 +75,20 @@ class JournalBearingInput(Part):
     """Distance of its middle from the start of its shaft in the drivetrain."""
     radial_load: Annotated[Force, Usual(0.01, 9.0, "tooth force")] | None = None
     """Load at the held stages; from the tooth forces when left out."""
-    feed_share: Annotated[Share, Usual(0.3, 1.0)] = 1.0
+    feed_share: Annotated[Share, Usual(0.3, 1.0), COUPLED] = 1.0
     """Share of the oil fed that cools the film; 1 as ISO 7902 assumes, less where oil passes by."""
-    feed: Feed = "widest_gap"
+    feed: Annotated[Feed, COUPLED] = "widest_gap"
     """Where oil enters. widest_gap: at the widest gap, as ISO 7902-1 has it; two_axial_grooves: by two grooves of
     20 degrees across the load, as in a split shell (J. W. Lund, K. K. Thomsen 1978)."""
     shell_conductance: HeatTransferCoefficient | None = None
     """Between shell and housing, on the area of the bore, in series with its film; perfect when left out."""
-    friction_factor: LossFactor = 1.0
+    friction_factor: Annotated[LossFactor, COUPLED] = 1.0
     """Multiplies its friction, on top of ``loss_factors.bearing`` of the gearbox."""
-    torsional_damping: TorsionalDamping | None = None
+    torsional_damping: ConstantDrag | None = None
     """Drag torque over speed, used where ``losses.bearing_drag`` is constant."""
-    radial_stiffness: LinearStiffness | None = None
+    radial_stiffness: Annotated[LinearStiffness, STATED] | None = None
     """Used where ``drivetrain.bearing_coefficients`` is stated."""
-    radial_damping: LinearDamping | None = None
+    radial_damping: Annotated[LinearDamping, STATED] | None = None
     """Used with it; none when left out."""
     axial_stiffness: LinearStiffness | None = None
     """Of its thrust face, where the bearing locates its shaft; 1e8 N/m when left out."""

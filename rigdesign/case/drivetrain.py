@@ -7,8 +7,10 @@ from pydantic import Field
 
 from rigdesign.base.part_name import GearName
 from rigdesign.case.fields import (
+    ALLOWED_MISALIGNMENT,
     Angle,
     Deviation,
+    Effect,
     Gap,
     Inertia,
     Length,
@@ -133,6 +135,9 @@ class HarmonicTorqueInput(Part):
     """Phase angle by which the torque lags: its maximum is where order times angle equals it."""
 
 
+OF_OFFSET = Effect(checks=("coupling offset",))
+
+
 class CouplingInput(Part):
     """Springs and dampers between the ends of two shafts."""
 
@@ -156,13 +161,13 @@ class CouplingInput(Part):
     """Damping over stiffness of these three [s]."""
     excitation: tuple[HarmonicTorqueInput, ...] = ()
     """Torques between its two ends, drawing the first ahead: what it makes of axes out of line turns up at order 2."""
-    radial_offset_maximum: Annotated[Length, Usual("0.02 mm", "2.5 mm")] | None = None
+    radial_offset_maximum: Annotated[Length, Usual("0.02 mm", "2.5 mm"), ALLOWED_MISALIGNMENT] | None = None
     """What its maker allows between the axes, as set and warm."""
-    angle_maximum: Annotated[Tilt, Usual("0.15 mrad", "9 mrad")] | None = None
+    angle_maximum: Annotated[Tilt, Usual("0.15 mrad", "9 mrad"), ALLOWED_MISALIGNMENT] | None = None
     """What its maker allows between the axes, as set and warm."""
-    cold_offset_lateral: Deviation = 0.0
+    cold_offset_lateral: Annotated[Deviation, OF_OFFSET] = 0.0
     """Axis of the first shaft against that of the second as set up, across (y)."""
-    cold_offset_vertical: Deviation = 0.0
+    cold_offset_vertical: Annotated[Deviation, OF_OFFSET] = 0.0
     """Axis of the first shaft against that of the second as set up, upwards (z)."""
     cold_angle_lateral: Slope = 0.0
     """Slope of the axis of the first shaft against that of the second as set up, across (y) over x."""
@@ -194,12 +199,17 @@ class MotorInput(Part):
     """Shaft of the power circuit that the motor drives."""
     end: End
     """End of that shaft at which it drives."""
-    torque_limit: Annotated[Torque, Usual(0.01, 1.1, "test torque")]
+    torque_limit: Annotated[
+        Torque, Usual(0.01, 1.1, "test torque"), Effect(checks=("time run",), solved=("time run",))
+    ]
     """Most torque of the motor at every speed; its power has a limit of its own under ``limits.bought_parts``."""
     inertia: Annotated[Inertia, Usual(1.2e-4, 3e-3, "torque of the motor")]
     """Polar mass moment of inertia of the rotor, turning with the shaft."""
     ripple: tuple[HarmonicTorqueInput, ...] = ()
     """Alternating parts of its torque about the mean."""
+
+
+OF_FRICTION = Effect(checks=("spline friction",))
 
 
 class Bracing(Part):
@@ -215,10 +225,12 @@ class Bracing(Part):
     """Helical gear that is shifted, ``gearbox.gear`` (``shift_held`` and ``torque_controlled``)."""
     partner_floats: bool = False
     """The partner of the shifted half floats axially and takes half of the shift."""
-    spline_friction_coefficient: Annotated[float, Usual(0.02, 0.4)] = Field(default=0.0, ge=0.0, le=1.0)
+    spline_friction_coefficient: Annotated[float, Usual(0.02, 0.4), OF_FRICTION] = Field(
+        default=0.0, ge=0.0, le=1.0
+    )
     """Friction coefficient of the seat on which the shifted gear slides: adds to the force of the load
     unit."""
-    spline_pitch_radius: Annotated[Length, Usual(0.25, 2.5, "shaft diameter")] | None = None
+    spline_pitch_radius: Annotated[Length, Usual(0.25, 2.5, "shaft diameter"), OF_FRICTION] | None = None
     """Radius at which that friction acts; no friction force when left out."""
     temperature_drift: float = Field(default=0.0, ge=-0.02, le=0.02)
     """Change of the locked torque, as a share, for each kelvin by which the gear oil that enters the gearbox of

@@ -4,7 +4,7 @@ import typing
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -119,6 +119,51 @@ class Usual:
         return f"{low} to {high}{f' times the {self.of}' if self.of else ''}"
 
 
+Influence = Literal[
+    "start torque", "ramp limits", "resonance limits", "specimen limits", "strength limits", "test time",
+    "thermal history", "coupling offset", "time run", "spline friction", "gear rating", "housing", "axial play",
+    "rig heat", "flank rating", "events", "gear seats",
+]  # fmt: skip
+"""Group of inputs that moves a part of the checks only: those of the families that name it. ``housing``: what the
+temperature fields move; the teeth of the loop feel it by less than a thousandth of a limit."""
+ModelPart = Literal["coupling", "curves", "time run"]
+MODEL_PARTS: tuple[ModelPart, ...] = ("coupling", "curves", "time run")
+Condition = Literal["bare", "film", "dry", "torsional", "drag"]
+"""bare: in a gearbox without a housing; film: at a plain bearing whose coefficients are computed; dry: no machine heats
+an oil circuit, which feeds gearboxes; torsional: shafts only twist; drag: films give the drag of the bearings."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effect:
+    """What a key moves, and the keys below it unless they say otherwise, each answer for itself.
+
+    A key that says nothing moves every check and has everything solved again: a missing effect costs time, not truth.
+    `tests/verification/test_ranges_plan` perturbs every number of a case and compares. A limit that a check names as
+    its source always belongs to it.
+
+    checks : groups by which it moves checks; empty for none
+    where : what the case has to be for ``checks`` to hold
+    solved : parts of the model that are solved again. Heat and oil move the response over speed and the time run
+        through drag torques and the temperature of the gears (`rigdesign.studies.modified_rig`)
+    through_heat : it reaches the dynamic loads through the temperatures of the gears, the drag torques and the friction
+        of the teeth alone: it changes neither drivetrain nor schedule nor the teeth as drawn
+    of_rig : False for an input of what is measured or shown, which no check has
+    """
+
+    checks: tuple[Influence, ...] | None = None
+    where: tuple[Condition, ...] = ()
+    solved: tuple[ModelPart, ...] | None = None
+    through_heat: bool = False
+    of_rig: bool = True
+
+
+COUPLED = Effect(solved=("coupling",))
+OF_HEAT = Effect(through_heat=True)
+ALLOWED_MISALIGNMENT = Effect(checks=(), solved=())
+"""Of a coupling by its maker: a limit beside the part."""
+RESONANCE_LIMIT = Effect(checks=("resonance limits",), solved=("curves",))
+SCUFFING = Effect(checks=("flank rating",), solved=())
+
 Length = Annotated[float, Quantity("length", above="0 mm", at_most="20 m")]
 Size = Annotated[float, Quantity("length", above="0 mm", at_most="20 m", example="300 mm")]
 """A measure of a housing, a plate, a shaft."""
@@ -226,7 +271,7 @@ Resistance = Annotated[float, Quantity("resistance", at_least="0 ohm", at_most="
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 """A part of a whole, 0 to 1."""
 Positive = Annotated[float, Field(gt=0.0)]
-LoadStage = Annotated[float, Field(ge=1.0, le=14.0), Usual(4.0, 14.0)]
+LoadStage = Annotated[float, Field(ge=1.0, le=14.0), Usual(4.0, 14.0), SCUFFING]
 """Load stage of the FZG test A/8.3/90, DIN ISO 14635-1."""
 Count = Annotated[int, Field(gt=0)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=60)]

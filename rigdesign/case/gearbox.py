@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from dynamics.losses.oil_jet import JET_ANGLES, OilJet
 from rigdesign.case.bearings import BearingInput
-from rigdesign.case.fields import Name, Part, Share, Title, Usual, fault
+from rigdesign.case.fields import OF_HEAT, Effect, Name, Part, Share, Title, Usual, fault
 from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.housing import Housing
 from rigdesign.case.losses import LossFactors
@@ -79,6 +79,9 @@ class HeatSplit(Part):
         return self
 
 
+OF_HOUSING = Effect(checks=("housing",), solved=("coupling",), through_heat=True)
+
+
 class Gearbox(Part):
     """One gearbox of the rig."""
 
@@ -90,26 +93,26 @@ class Gearbox(Part):
     """Gears by name."""
     meshes: Mapping[Name, GearMesh] = Field(min_length=1)
     """Meshes by name, each of two gears."""
-    oil: GearOil
+    oil: Annotated[GearOil, OF_HEAT]
     """Oil of the gears: injected at the meshes, or a sump into which they dip."""
     bearings: Mapping[Name, BearingInput] = Field(min_length=1)
     """Bearings by name."""
-    bearing_oil: BearingOil = SplashOil(lubrication="splash")
+    bearing_oil: Annotated[BearingOil, OF_HEAT] = SplashOil(lubrication="splash")
     """Oil of the bearings: fed to them, thrown on them by the gears, or grease."""
-    seals: Mapping[Name, Seals] = {}
+    seals: Annotated[Mapping[Name, Seals], OF_HOUSING] = {}
     """Seals by name, one entry a shaft."""
-    heat_split: HeatSplit
+    heat_split: Annotated[HeatSplit, Effect(checks=(), where=("bare",), through_heat=True)]
     """Shares of the losses that heat solid parts."""
-    loss_factors: LossFactors = LossFactors()
+    loss_factors: Annotated[LossFactors, OF_HEAT] = LossFactors()
     """Factors on the losses of this gearbox."""
-    oil_paths: OilPaths = OilPaths()
+    oil_paths: Annotated[OilPaths, OF_HEAT] = OilPaths()
     """Shares of the gear oil that take another way."""
-    oil_state: OilState = OilState()
+    oil_state: Annotated[OilState, OF_HEAT] = OilState()
     """How both oils differ from their data sheet."""
     rotation: Literal["clockwise", "anticlockwise"] = "clockwise"
     """Sense in which the pinion of the first mesh turns, seen from the front of the housing; the other gears follow.
     It says to which side an inclination of the warm axes across their plane loads the faces."""
-    housing: Housing | None = None
+    housing: Annotated[Housing, OF_HOUSING] | None = None
     """Geometry and boundary conditions; a gearbox without one has no temperature field."""
 
     @property

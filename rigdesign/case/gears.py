@@ -8,9 +8,11 @@ from pydantic import Field, model_validator
 
 from rigdesign.base.units import show
 from rigdesign.case.fields import (
+    COUPLED,
     Angle,
     Count,
     Deviation,
+    Effect,
     Gap,
     HelixAngle,
     Inertia,
@@ -208,7 +210,7 @@ class Spline(Part):
     """Moment per tilt between gear and shaft, about a diameter."""
     lateral_damping_time: float = Field(default=0.0, ge=0.0, le=1e-3)
     """Damping over stiffness of these three [s]."""
-    toothing: SplineToothing | None = None
+    toothing: Annotated[SplineToothing, Effect(checks=("gear seats",))] | None = None
     """Toothing of the spline, for the checks of its strength."""
 
     @model_validator(mode="after")
@@ -401,7 +403,7 @@ class Gear(Part):
     """Press fit: effective interference of the bore on its shaft at rest, on the diameter, whose stress the root of an
     idler holds as well. Zero for a seat without one. At 20 degC: its slip torque counts what a gear warmer than its
     shaft loses of it and a colder one gains, the stress in the root does not."""
-    shaft_interference_minimum: Small | None = None
+    shaft_interference_minimum: Annotated[Small, Effect(checks=("gear seats",))] | None = None
     """The least that the tolerances of bore and shaft leave of ``shaft_interference``: what the slip torque of the
     press fit is computed with; the same when left out."""
     position: Gap | None = None
@@ -416,9 +418,9 @@ class Gear(Part):
     """Radial cut of the tip cylinder; or ``contact_ratio`` of the mesh."""
     tooth_thinning: Annotated[Small, Usual(0.007, 0.12, "module")] = 0.0
     """Allowance of the normal tooth thickness that makes the backlash."""
-    quality_grade: int = Field(ge=1, le=11)
+    quality_grade: Annotated[int, Effect(checks=("gear rating",))] = Field(ge=1, le=11)
     """Flank tolerance class, ISO 1328-1:2013."""
-    flank_roughness: Annotated[Small, Usual("0.06 um", "3 um")]
+    flank_roughness: Annotated[Small, Usual("0.06 um", "3 um"), COUPLED]
     """Arithmetic mean roughness Ra of the flanks."""
     material: Name
     """Built-in material or a name under ``materials``."""
@@ -430,7 +432,7 @@ class Gear(Part):
     """Times the inertia, stated or of the disc."""
     spline: Spline | None = None
     """Connection with the shaft; a gear without one is rigid with its shaft."""
-    strain_gauges: Mapping[Name, StrainGaugeInput] = {}
+    strain_gauges: Annotated[Mapping[Name, StrainGaugeInput], Effect(of_rig=False)] = {}
     """Strain gauges in the root of its teeth, by name."""
 
     @property
@@ -503,7 +505,9 @@ class GearMesh(Part):
     """Teeth by which the wheel is put on further: tooth 0 of the pinion meets this tooth of the wheel."""
     application_factor: float = Field(default=1.0, ge=1.0, le=5.0)
     """K_A of ISO 6336: load from outside the gearbox over the nominal one."""
-    face_load_factor: Annotated[float, Usual(1.0, 3.0)] = Field(default=1.0, ge=1.0, le=10.0)
+    face_load_factor: Annotated[float, Usual(1.0, 3.0), Effect(checks=("gear rating",), solved=())] = Field(
+        default=1.0, ge=1.0, le=10.0
+    )
     """K_Fbeta of ISO 6336-3: uneven load over the face width. K_Hbeta of the flanks follows from it. It counts where no
     loaded contact is computed (analytic teeth); where one is, its own K_Hbeta, K_Fbeta, K_Halpha and K_Falpha do."""
     phase: Share = 0.0

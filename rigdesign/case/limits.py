@@ -8,7 +8,9 @@ from pydantic import Field, model_validator
 from dynamics.standards.api617_2014 import LEAST_DECREMENT, MOST_CLEARANCE_SHARE, TORSIONAL_SEPARATION
 from rigdesign.base import units
 from rigdesign.case.fields import (
+    RESONANCE_LIMIT,
     Deviation,
+    Effect,
     Flow,
     Hours,
     Name,
@@ -90,7 +92,12 @@ class OilLimits(Part):
 class BearingLimits(Part):
     """Journal bearings and rolling bearings."""
 
-    start_torque_limit: Annotated[Torque, Usual(0.01, 0.4, "test torque")] | None = None
+    start_torque_limit: (
+        Annotated[
+            Torque, Usual(0.01, 0.4, "test torque"), Effect(checks=("start torque",), solved=("curves",))
+        ]
+        | None
+    ) = None
     """Most torque below the transition speed."""
     film_thickness_minimum: Annotated[Play, Usual(2e-5, 1e-3, "smallest bearing")] | None = None
     """Least oil film of a journal bearing at a held stage."""
@@ -113,12 +120,12 @@ class DynamicsLimits(Part):
 
     dynamic_factor_maximum: Annotated[float, Field(gt=1.0), Usual(1.02, 4.0)] | None = None
     """K_V at the held stages, max over mean."""
-    resonance_distance_minimum: Annotated[Share, Usual(0.012, 0.6)] | None = None
+    resonance_distance_minimum: Annotated[Share, Usual(0.012, 0.6), RESONANCE_LIMIT] | None = None
     """Distance of a speed at which the rig dwells from a dangerous resonance of meshes, shafts and joints, as a share
     of that speed; the bands that the recommended ramp avoids have it too."""
-    dangerous_amplification: Annotated[Positive, Usual(1.1, 8.0)] = 2.0
+    dangerous_amplification: Annotated[Positive, Usual(1.1, 8.0), RESONANCE_LIMIT] = 2.0
     """A resonance is dangerous above this amplification of the mesh force, or above ``dangerous_force_share``."""
-    dangerous_force_share: Annotated[Positive, Usual(0.03, 1.5)] = 0.2
+    dangerous_force_share: Annotated[Positive, Usual(0.03, 1.5), RESONANCE_LIMIT] = 0.2
     """A resonance is dangerous above this dynamic mesh force as a share of the mean one."""
     lift_off_share_maximum: Share | None = None
     """Share of time without tooth contact in a loaded stage."""
@@ -344,15 +351,15 @@ class Limits(Part):
     """Limits of the bearings."""
     dynamics: DynamicsLimits = DynamicsLimits()
     """Limits of the additional dynamic load and of resonances."""
-    strength: StrengthLimits = StrengthLimits()
+    strength: Annotated[StrengthLimits, Effect(checks=("strength limits",))] = StrengthLimits()
     """Least safeties of the gears of the rig itself."""
     flanks: FlankLimits = FlankLimits()
     """Least load capacity of the flanks."""
     geometry: GeometryLimits = GeometryLimits()
     """Limits of the toothing as drawn."""
-    specimen: SpecimenWindow = SpecimenWindow()
+    specimen: Annotated[SpecimenWindow, Effect(checks=("specimen limits",))] = SpecimenWindow()
     """Window of the test gears."""
-    ramp: RampRules = RampRules()
+    ramp: Annotated[RampRules, Effect(checks=("ramp limits",))] = RampRules()
     """Rules of the run-up."""
     bought_parts: Mapping[Name, BoughtPart] = {}
     """Limits of bought parts by name."""

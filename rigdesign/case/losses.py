@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, Protocol, TypeAlias
 
 from pydantic import Field
 
-from rigdesign.case.fields import MistDensity, Name, Part, Positive, Power, Usual
+from rigdesign.case.fields import OF_HEAT, Effect, MistDensity, Name, Part, Positive, Power, Usual
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,20 +159,23 @@ class ToothFriction(Part):
     """Oil constants when the law is ``doleschel``."""
 
 
+OF_LOSS = Effect(solved=("coupling",), through_heat=True)
+
+
 class Losses(Part):
     """Basis and inputs of the losses."""
 
     basis: Literal["computed", "input"]
     """computed: every loss by its law; input: only those under ``given``."""
-    given: Mapping[Name, GivenLoss] = {}
+    given: Annotated[Mapping[Name, GivenLoss], OF_HEAT] = {}
     """Losses prescribed or measured, by name."""
-    friction: ToothFriction = ToothFriction()
+    friction: Annotated[ToothFriction, OF_LOSS] = ToothFriction()
     """Friction of the teeth."""
-    chamber_density: MistDensity | None = None
+    chamber_density: Annotated[MistDensity, OF_LOSS] | None = None
     """Density of the oil-air mist round the gears, for windage."""
-    squeeze_share: Annotated[float, Usual(0.01, 0.1)] = Field(default=0.0, ge=0.0, le=0.10)
+    squeeze_share: Annotated[float, Usual(0.01, 0.1), OF_LOSS] = Field(default=0.0, ge=0.0, le=0.10)
     """Squeezing of oil out of the mesh, as a share of the mesh loss."""
-    mesh_damping_heats_oil: bool = False
+    mesh_damping_heats_oil: Annotated[bool, OF_HEAT] = False
     """Whether the work of the mesh dampers is heat of the gear oil. Left out, the motor pays it and it stands among the
     losses, but heats nothing: such a damper stands for all that damps the vibration of a loop, tooth friction and
     films having their own heat."""

@@ -10,6 +10,7 @@ from pydantic import Field, Tag, model_validator
 
 from rigdesign.base.part_name import OilStreamName
 from rigdesign.case.fields import (
+    SCUFFING,
     BodyHeatCapacity,
     Conductance,
     Flow,
@@ -57,7 +58,7 @@ class JetOil(Part):
     """Share of the jets that is closed: the same flow leaves the others faster, and wets so much less face width."""
     scuffing_load_stage: LoadStage | None = None
     """Load stage of the FZG test A/8.3/90 at which this oil lets the gears scuff; that of the oil when left out."""
-    scuffing_temperature: Temperature | None = None
+    scuffing_temperature: Annotated[Temperature, SCUFFING] | None = None
     """Contact temperature at which this oil lets gears scuff, where a test or table has it; goes before the stage."""
 
     temperature_key: ClassVar[str] = "inlet_temperature"
@@ -103,7 +104,7 @@ class DipOil(Part):
     """Inner width of the box across the shafts, for ISO/TR 14179-2 in a gearbox without a housing."""
     scuffing_load_stage: LoadStage | None = None
     """Load stage of the FZG test A/8.3/90 at which this oil lets the gears scuff; that of the oil when left out."""
-    scuffing_temperature: Temperature | None = None
+    scuffing_temperature: Annotated[Temperature, SCUFFING] | None = None
     """Contact temperature at which this oil lets gears scuff, where a test or table has it; goes before the stage."""
 
     temperature_key: ClassVar[str] = "sump_temperature"

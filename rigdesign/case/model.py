@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
@@ -14,7 +14,7 @@ from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
 from rigdesign.case.drivetrain import NO_DRIVETRAIN, DrivetrainInput
 from rigdesign.case.elastic_shafts import elastic_assumptions
 from rigdesign.case.events import Event
-from rigdesign.case.fields import Name, Part, Text, Title
+from rigdesign.case.fields import OF_HEAT, Effect, Name, Part, Text, Title
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.housing import Housing
 from rigdesign.case.limits import Limits
@@ -92,9 +92,9 @@ class Case(Part):
     """Short name of the case, for files and tables."""
     title: Title
     """Title of the report."""
-    ambient: Ambient
+    ambient: Annotated[Ambient, OF_HEAT]
     """Room in which the rig stands."""
-    oils: Mapping[Name, CustomOil] = {}
+    oils: Annotated[Mapping[Name, CustomOil], OF_HEAT] = {}
     """Oils of the case by name, in addition to the built-in ones."""
     materials: Mapping[Name, CustomMaterial] = {}
     """Materials of the case by name, in addition to the built-in ones."""
@@ -102,7 +102,10 @@ class Case(Part):
     """Gearboxes of the rig by name."""
     oil_circuits: Mapping[Name, OilCircuit] = {}
     """Oil circuits by name; what no circuit feeds has the inlet temperature its gearbox states."""
-    rig_heat: RigHeatInput = RigHeatInput()
+    rig_heat: Annotated[
+        RigHeatInput,
+        Effect(checks=("rig heat",), where=("dry",), solved=("coupling",), through_heat=True),
+    ] = RigHeatInput()
     """Machines, couplings and room: heat of the rig outside of its gearboxes."""
     drivetrain: DrivetrainInput | None = None
     """Left out when the losses are given: the dynamic checks are then not applicable."""
@@ -110,15 +113,15 @@ class Case(Part):
     """How the losses are found."""
     schedule: ScheduleInput
     """Stages of speed and torque."""
-    test_plan: TestPlan
+    test_plan: Annotated[TestPlan, Effect(checks=("test time",), solved=())]
     """Planned test."""
-    limits: Limits = Limits()
+    limits: Annotated[Limits, Effect(checks=(), solved=())] = Limits()
     """Limits of the checks."""
     numerics: Numerics
     """Tolerances and sizes of the models."""
-    transient: Transient = Transient()
+    transient: Annotated[Transient, Effect(checks=("thermal history",))] = Transient()
     """Warm-up, dwell and stops that ``check --transient`` follows."""
-    events: Mapping[Name, Event] = {}
+    events: Annotated[Mapping[Name, Event], Effect(checks=("events",))] = {}
     """Events by name: loss of teeth, emergency stop, overspeed."""
     document: Document = Document()
     """Who answers for the report; moves no result and is left out of the hash."""

@@ -15,7 +15,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel
 
-from rigdesign.case.fields import Quantity, Usual, of_kind
+from rigdesign.case.fields import Effect, Quantity, Usual, of_kind
 from rigdesign.case.provenance import item_name
 
 
@@ -94,6 +94,26 @@ def slot_at(model: type[BaseModel], tree: Mapping[str, Any], keys: Sequence[str]
             return None
         slot, node = found
     return slot
+
+
+@cache
+def effects_at(model: type[BaseModel], path: str) -> tuple[Effect, ...]:
+    """Effects that the keys of a path state, from the case down; of several kinds of a table that of any."""
+    slots, effects = [slot_of(model)], list[Effect]()
+    for key in path.split("."):
+        slots = [below for slot in slots for below in _below(slot, key)]
+        stated = (item for slot in slots for _, metadata in slot.choices for item in metadata)
+        effects += [item for item in dict.fromkeys(stated) if isinstance(item, Effect)]
+    return tuple(effects)
+
+
+def _below(slot: Slot, key: str) -> Iterator[Slot]:
+    """What may stand one key further down, whatever names the case has."""
+    for kind, _ in slot.choices:
+        if typing.get_origin(kind) in (tuple, Mapping):
+            yield slot_of(typing.get_args(kind)[typing.get_origin(kind) is Mapping])
+    fields = (slot_of_field(model, key) for model in slot.models())
+    yield from (field for field in fields if field is not None)
 
 
 def known_paths(model: type[BaseModel], tree: Mapping[str, Any]) -> list[str]:

@@ -12,6 +12,7 @@ from rigdesign.base.units import show
 from rigdesign.case.fields import (
     AssumptionRecord,
     Conductance,
+    Effect,
     Gap,
     Name,
     Part,
@@ -153,7 +154,7 @@ class RigHeatInput(Part):
     """Machines that drive the rig, by name; their losses follow from what the rig takes."""
     couplings: Mapping[Name, CouplingRotorInput] = {}
     """Couplings that stir air, by name; their windage loads the drive."""
-    room: RoomInput | None = None
+    room: Annotated[RoomInput, Effect(checks=("rig heat",), solved=())] | None = None
     """Room that takes the heat; its temperature is not asked for when left out."""
 
     @property

@@ -11,9 +11,11 @@ from dynamics.rotor.rolling_kinds import ROLLING_KINDS, CatalogueBearing
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.fields import (
+    COUPLED,
     Angle,
     AssumptionRecord,
     Deviation,
+    Effect,
     Force,
     Gap,
     Length,
@@ -176,6 +178,11 @@ Cleanliness = Literal[
 ]
 
 
+Locating = Annotated[bool, Effect(checks=(), where=("bare", "torsional"), solved=("coupling",))]
+AxialPlay = Annotated[Play, Usual("0.06 mm", "1.9 mm"), Effect(checks=("axial play",), solved=("coupling",))]
+ConstantDrag = Annotated[TorsionalDamping, Effect(checks=(), where=("drag",))]
+
+
 class RollingBearingInput(Part):
     """Rolling bearing."""
 
@@ -189,12 +196,12 @@ class RollingBearingInput(Part):
     """Of a tabled bearing, e.g. ``NU 208``."""
     catalogue: CatalogueNumbers | None = None
     """Numbers of a bearing that is not tabled."""
-    locating: bool = False
+    locating: Locating = False
     """Fixes its shaft axially and takes the axial force of its gears; one per shaft."""
     arrangement: Literal["back_to_back", "face_to_face"] | None = None
     """How a bearing with a contact angle stands to the one at the other end: back to back (O) or face to face (X). Left
     out, both are rated for either, and shafts that bend have them face to face."""
-    axial_play: Annotated[Play, Usual("0.06 mm", "1.9 mm")] = 0.0
+    axial_play: AxialPlay = 0.0
     """Free axial travel of the shaft between a stop at this bearing and one at the other, as drawn."""
     position: Gap | None = None
     """Distance of its middle from the start of its shaft in the drivetrain."""
@@ -226,9 +233,9 @@ class RollingBearingInput(Part):
     """Of the rating life."""
     seal_torque: Annotated[Torque, Usual(1e-5, 0.02, "test torque")] = 0.0
     """Friction torque of the bearing's own contact seals."""
-    friction_factor: LossFactor = 1.0
+    friction_factor: Annotated[LossFactor, COUPLED] = 1.0
     """Multiplies its friction, on top of ``loss_factors.bearing`` of the gearbox."""
-    torsional_damping: TorsionalDamping | None = None
+    torsional_damping: ConstantDrag | None = None
     """Drag torque over speed, used where ``losses.bearing_drag`` is constant."""
     radial_stiffness: LinearStiffness | None = None
     """Used where ``drivetrain.bearing_coefficients`` is stated."""

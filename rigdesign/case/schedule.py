@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from rigdesign.case.fields import (
     Count,
+    Effect,
     Frequency,
     HeatTransferCoefficient,
     Hours,
@@ -46,7 +47,7 @@ class StageInput(Part):
     """Torque at its end; that of the stage before when left out."""
     torque_share: Share | None = None
     """The torque as a share of the test torque."""
-    duration: Time
+    duration: Annotated[Time, Effect(checks=("time run",), solved=("time run",))]
     """How long the stage takes."""
     drive_torque: Torque | None = None
     """Constant drive torque instead of speed control; ``duration`` is then the most it may take."""
@@ -158,7 +159,7 @@ class Numerics(Part):
     """Last speed of the dynamic factor curve."""
     curve_speeds: Annotated[int, Field(ge=2, le=5000), Usual(8, 900)] = 200
     """Speeds between both, evenly spaced; resonances get more."""
-    root_stress_speeds: tuple[Speed, ...] = ()
+    root_stress_speeds: Annotated[tuple[Speed, ...], Effect(of_rig=False)] = ()
     """Speeds at which root stress and strain rate are shown over the rolling angle, in addition to the held stages."""
     response_period: Literal["mesh", "revolution", "hunting_cycle"] = "mesh"
     """What the periodic response repeats after. When left out: a mesh; in a loop whose meshes pass teeth at different

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, TypeAlias
 from dynamics.losses.loss import Loss
 from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
 from dynamics.losses.windage import Mist
-from rigdesign.case.fields import Clearance, Name, Part, Torque, Usual
+from rigdesign.case.fields import Clearance, Effect, Name, Part, Torque, Usual
 
 
 class EndSeal(ABC):
@@ -78,9 +78,11 @@ class Seals(Part):
     """Shaft that they seal."""
     kind: EndSealName = "contactless"
     """What seals the shaft where it leaves the gearbox: a gap without contact, or a radial lip."""
-    radial_gap: Annotated[Clearance, Usual(1.5e-3, 0.03, "shaft diameter")]
+    radial_gap: Annotated[
+        Clearance, Usual(1.5e-3, 0.03, "shaft diameter"), Effect(checks=(), where=("bare", "torsional"))
+    ]
     """Half the difference of bore and shaft diameter as drawn; thermal expansion changes it."""
-    axial_travel: Annotated[Clearance, Usual("0.35 mm", "8 mm")]
+    axial_travel: Annotated[Clearance, Usual("0.35 mm", "8 mm"), Effect(checks=(), solved=())]
     """Axial movement of the shaft the seals take without touching."""
     rubbing_torque: Annotated[Torque, Usual(1e-5, 0.03, "test torque")] = 0.0
     """Friction torque of seals that touch, of all seals of the shaft together, on top of what ``kind`` loses."""

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from rigdesign.case.fields import (
+    SCUFFING,
     Conductivity,
     Density,
     ExpansionCoefficient,
@@ -109,7 +110,7 @@ class CustomMaterial(Part):
     """sigma_Hlim of ISO 6336-5 for gears: strength of their flanks, and how they run in."""
     treatment: Literal["case_hardened", "nitrided", "through_hardened"] = "case_hardened"
     """Of gears: how their flanks run in (ISO 6336-1)."""
-    scuffing_factor: Annotated[float, Field(ge=0.4, le=1.5)] = 1.0
+    scuffing_factor: Annotated[float, Field(ge=0.4, le=1.5), SCUFFING] = 1.0
     """X_W of ISO/TS 6336-20 for gears: 1 for case-hardened steel with 20 to 30 % of retained austenite, 1.15 with less,
     1.5 nitrided."""
     tempering_temperature: Annotated[Temperature, Usual("120 degC", "600 degC")] | None = None

@@ -1,12 +1,17 @@
-"""Which assumed inputs a check depends on: those its family declares (`registry.RuleFamily`) and its own limit."""
+"""Which assumed inputs a check depends on: those whose effect its family names (`registry.RuleFamily`) and its own
+limit."""
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
+from rigdesign.case.fields import Condition, Influence
 from rigdesign.case.model import Case
-from rigdesign.checks.influences import INPUTS, MOVE_NO_CHECK, OF_ONE_GEARBOX, Influence
+from rigdesign.case.paths import effects_at
 from rigdesign.checks.registry import PATH, REGISTRY, RuleFamily
 from rigdesign.results.check import Check
+
+OF_ONE_GEARBOX: tuple[Influence, ...] = ("gear rating",)
+"""Influences of an input that stay in its gearbox: the place of a check begins with it."""
 
 
 def with_assumptions(case: Case, check: Check) -> Check:
@@ -43,7 +48,7 @@ class _Basis:
 
     def holds(self, path: str) -> bool:
         """Whether an input is part of it."""
-        if any(is_under(path, part) for part in MOVE_NO_CHECK):
+        if not all(effect.of_rig for effect in effects_at(Case, path)):
             return False
         if any(is_under(path, part) for part in self.own):
             return True
@@ -71,7 +76,7 @@ def influences_of(case: Case, path: str) -> tuple[Influence, ...] | None:
 
 @dataclass(frozen=True)
 class _CaseKind:
-    """What entries of `INPUTS` ask of a case.
+    """What an `Effect` asks of a case.
 
     wet : a machine is cooled by an oil circuit; bends : the shafts do; drags : bearing films give their drag
     films : plain bearings whose lateral coefficients the case does not take as stated, as ``gearbox.bearings.name``
@@ -96,19 +101,19 @@ class _CaseKind:
             bare=tuple(name for name, box in case.gearboxes.items() if box.housing is None),
         )
 
-    def filled(self, part: str) -> list[str]:
-        """Paths that an entry of `INPUTS` means in the case."""
-        if "{dry}" in part:
-            return [] if self.wet else [part.replace("{dry}", "")]
-        if "{drag}" in part:
-            return [part.replace("{drag}", "")] if self.drags else []
-        if "{torsional}" in part:
-            return [] if self.bends else self.filled(part.replace("{torsional}", ""))
-        if "{film}" in part:
-            return [part.replace("{film}", name) for name in self.films]
-        if "{bare}" in part:
-            return [part.replace("{bare}", name) for name in self.bare]
-        return [part]
+    def meets(self, condition: Condition, path: str) -> bool:
+        """Whether a condition of an effect holds at a path."""
+        match condition:
+            case "dry":
+                return not self.wet
+            case "drag":
+                return self.drags
+            case "torsional":
+                return not self.bends
+            case "film":
+                return any(is_under(path, f"gearboxes.{name}") for name in self.films)
+            case "bare":
+                return any(is_under(path, f"gearboxes.{name}") for name in self.bare)
 
 
 def _films(case: Case) -> tuple[str, ...]:
@@ -124,12 +129,11 @@ def _films(case: Case) -> tuple[str, ...]:
 @lru_cache(maxsize=1 << 13)
 def _influences(kind: _CaseKind, path: str) -> tuple[Influence, ...] | None:
     """What an input moves in a case of this kind; None for all checks."""
-    if any(is_under(path, part) for part in MOVE_NO_CHECK):
-        return ()
-    for inputs, influences in INPUTS.items():
-        for part in inputs:
-            if any(is_under(path, one) for one in kind.filled(part)):
-                return influences
+    for effect in reversed(effects_at(Case, path)):
+        if not effect.of_rig:
+            return ()
+        if effect.checks is not None and all(kind.meets(one, path) for one in effect.where):
+            return effect.checks
     return None
 
 

@@ -13,10 +13,9 @@ from rigdesign.base.units import KINDS, display
 from rigdesign.case.component_limits import shafts_of
 from rigdesign.case.limits import BoughtPart, ResultQuantity
 from rigdesign.case.model import Case
-from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.oil import FLOWS
 from rigdesign.checks.omissions import Omissions, constant_drag, warming
-from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
+from rigdesign.checks.registry import REGISTRY, SPEEDS, RuleFamily, Topic
 from rigdesign.checks.rules import Omission, Rule, hold, not_applicable, not_evaluated, worst
 from rigdesign.results.check import NO_HOUSING, NO_LOADS, Check
 from rigdesign.results.loads import StageBracing

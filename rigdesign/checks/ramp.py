@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 from dynamics.vibration.schedule import RampLimits, ramp_rules
 from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT
-from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.omissions import warming
-from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
+from rigdesign.checks.registry import REGISTRY, SPEEDS, RuleFamily, Topic, Values
 from rigdesign.checks.rules import Comparison, hold, not_applicable
 from rigdesign.results.check import NO_LIMIT, Check
 from rigdesign.results.units import NEWTON_METRE, REVOLUTION_PER_MINUTE

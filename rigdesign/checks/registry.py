@@ -13,9 +13,9 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rigdesign.case.fields import Influence
 from rigdesign.case.limits import Limits
 from rigdesign.case.model import Case
-from rigdesign.checks.influences import Influence
 from rigdesign.checks.places import whole_rig
 from rigdesign.checks.rules import Comparison, Omission, Rule, hold, not_applicable, not_evaluated, worst
 from rigdesign.results.check import NO_HOUSING, NO_LIMIT, NO_LOADS, Check
@@ -30,6 +30,12 @@ Finder = Callable[["SolvedRig", Check], Iterator[Omission]]
 """What the value of a held check leaves out."""
 PATH = re.compile(r"[a-z_0-9]+(?:\.[a-z_0-9]+)+")
 """Paths of the case in the source of a rule."""
+SPEEDS = (
+    "schedule", "gearboxes.*.gears.*.teeth", "gearboxes.*.gears.*.shaft", "gearboxes.*.gears.*.role",
+    "gearboxes.*.meshes.*.pinion", "gearboxes.*.meshes.*.wheel", "drivetrain.couplings.*.shafts",
+    "drivetrain.torque_at",
+)  # fmt: skip
+"""Inputs behind the stated speeds and torques of all shafts: the schedule and the ratios."""
 
 
 @dataclass(frozen=True)

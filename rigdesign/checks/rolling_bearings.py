@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 from dynamics.standards.skf_friction_2006 import STABILISED_TEMPERATURE
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
-from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.omissions import HEAT, of_gearboxes
-from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
+from rigdesign.checks.registry import REGISTRY, SPEEDS, RuleFamily, Topic, Values
 from rigdesign.results.check import Check
 from rigdesign.results.units import DEGREE_CELSIUS, HOUR, MICROMETRE, NUMBER, DisplayUnit
 

@@ -12,10 +12,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from rigdesign.checks.influences import SPEEDS, Influence
+from rigdesign.case.fields import Influence
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.places import rig_gears, specimen_gears
-from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
+from rigdesign.checks.registry import LOADS, REGISTRY, SPEEDS, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated, worst
 from rigdesign.results.check import NO_LIMIT, NO_LOADS, Check
 from rigdesign.results.dynamics import FROM_INFLUENCE

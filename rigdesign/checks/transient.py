@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rigdesign.case.fields import Influence
 from rigdesign.checks.clearances import NOT_EXPANDED, PLAY_NOT_EXPANDED, SEALS_NOT_EXPANDED
-from rigdesign.checks.influences import Influence
 from rigdesign.checks.omissions import constant_drag, coupled_shafts, given_losses
 from rigdesign.checks.places import couplings, housings
 from rigdesign.checks.registry import REGISTRY, Finder, RuleFamily, Topic

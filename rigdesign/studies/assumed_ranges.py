@@ -1,8 +1,8 @@
 """`check --ranges`: every assumed input with a range at its two ends, one at a time, and what the verdicts are worth.
 
-Every end starts from the converged stated rig and solves again what its input touches (`affected_parts`): nothing but
-the checks for a limit, the coupling loop for heat and oil, the whole for what the loop is made of. Ends run in worker
-processes like the points of a study.
+Every end starts from the converged stated rig and solves again what its input touches (`case.fields.Effect`): nothing
+but the checks for a limit, the coupling loop for heat and oil, the whole for what the loop is made of. Ends run in
+worker processes like the points of a study.
 """
 
 import time
@@ -15,7 +15,7 @@ from typing import Literal
 from rigdesign.base.errors import CaseError, RigdesignError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.worker_pool import DIED, compute_all, worker_count
-from rigdesign.case.fields import AssumptionRecord, RangeEnds
+from rigdesign.case.fields import AssumptionRecord, ModelPart, RangeEnds
 from rigdesign.case.loader import changed_together
 from rigdesign.case.model import Case
 from rigdesign.checks import held_checks
@@ -29,7 +29,7 @@ from rigdesign.results.ranges import (
     TemperatureRange,
 )
 from rigdesign.results.result import RunResult
-from rigdesign.studies.modified_rig import Part, Reanalysis, parts_of
+from rigdesign.studies.modified_rig import Reanalysis, parts_of
 from rigdesign.studies.reference_rig import (
     ReanalysisResult,
     Reference,
@@ -59,7 +59,7 @@ class RangeEnd:
     end: End
     value: str
     stated: str
-    parts: tuple[Part, ...]
+    parts: tuple[ModelPart, ...]
     case: Case | None
     error: str | None = None
     same: bool = False
@@ -144,7 +144,7 @@ class EndResult:
     checks: dict[str, CheckAtEnd]
     max_temperature: float | None
     """[degC]"""
-    parts: tuple[Part, ...] = ()
+    parts: tuple[ModelPart, ...] = ()
     """What was solved again."""
     error: str | None = None
 

@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from dynamics.vibration.time_response import TimeResponse
+from rigdesign.case.fields import MODEL_PARTS, ModelPart
 from rigdesign.case.model import Case
-from rigdesign.checks.assumptions import is_under
+from rigdesign.case.paths import effects_at
 from rigdesign.coupling.fixed_point import Anderson
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
 from rigdesign.coupling.time_run import held_points, run_ramp
@@ -19,90 +20,8 @@ from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.reuse import same_housings, with_housings_of
 from rigdesign.studies.shifted_run import Array, shifted_drive, shifted_run
 
-# Which parts of the model an input touches, and which inputs reach the loads through temperatures alone.
-#
-# The table names what is known to touch only a part of the model. An input that stands in none of them is solved
-# again in full and influences every check (`checks.assumptions`): a missing entry costs time, not truth.
-
-Part = Literal["coupling", "curves", "time run"]
-PARTS: tuple[Part, ...] = ("coupling", "curves", "time run")
 TimeRun = Literal["marched", "shifted"]
 """How the time run follows loads that move."""
-
-SOLVED: dict[tuple[str, ...], tuple[Part, ...]] = {
-    (
-        "limits.dynamics.resonance_distance_minimum",
-        "limits.dynamics.dangerous_amplification",
-        "limits.dynamics.dangerous_force_share",
-        "limits.bearing.start_torque_limit",
-    ): ("curves",),
-    (
-        "limits",
-        "test_plan",
-        "gearboxes.*.seals.*.axial_travel",
-        "gearboxes.*.meshes.*.face_load_factor",
-        "gearboxes.*.oil.scuffing_load_stage",
-        "gearboxes.*.oil.scuffing_temperature",
-        "oils.*.scuffing_load_stage",
-        "materials.*.scuffing_factor",
-        "drivetrain.couplings.*.radial_offset_maximum",
-        "drivetrain.couplings.*.angle_maximum",
-        "rig_heat.room",
-    ): (),
-    ("schedule.stages.*.duration", "drivetrain.motor.torque_limit"): ("time run",),
-    (
-        "gearboxes.*.housing",
-        "gearboxes.*.seals",
-        "gearboxes.*.gears.*.flank_roughness",
-        *(
-            f"gearboxes.*.bearings.*.{key}"
-            for key in (
-                "width",
-                "diametral_clearance",
-                "feed_share",
-                "feed",
-                "friction_factor",
-                "axial_play",
-                "locating",
-            )
-        ),
-        "losses.chamber_density",
-        "losses.squeeze_share",
-        "losses.friction",
-        "rig_heat",
-    ): ("coupling",),
-}
-"""Inputs -> parts of the model they touch; the first entry that holds a path counts.
-
-Heat and oil move the response over speed and the time run through drag torques and the temperature of the gears.
-Where they move gears or axes more than `modified_rig.LOADS_MOVE` the loads are solved again as well; the torque of
-the motor follows its losses (`motor_torque`).
-"""
-
-THROUGH_HEAT = (
-    "ambient",
-    "oils",
-    "rig_heat",
-    *(
-        f"losses.{key}"
-        for key in ("given", "chamber_density", "squeeze_share", "friction", "mesh_damping_heats_oil")
-    ),
-    *(
-        f"gearboxes.*.{key}"
-        for key in (
-            "oil",
-            "bearing_oil",
-            "oil_paths",
-            "oil_state",
-            "loss_factors",
-            "heat_split",
-            "housing",
-            "seals",
-        )
-    ),
-)
-"""Inputs that reach the dynamic loads through the temperatures of the gears, the drag torques and the friction of the
-teeth: they change neither drivetrain nor schedule nor the teeth as drawn. `reanalysis` names the exceptions."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +33,7 @@ class Reanalysis:
     """
 
     case: Case
-    parts: tuple[Part, ...]
+    parts: tuple[ModelPart, ...]
     time_run: TimeRun = "marched"
 
 
@@ -125,9 +44,9 @@ def reanalysis(case: Case, changed: Collection[str]) -> Reanalysis | None:
     with warm gears, and one with a temperature drift follows the oil. With a constant bearing drag the factor of
     that loss is part of the drivetrain.
     """
-    parts = tuple(part for part in PARTS if any(part in parts_of(path) for path in changed))
+    parts = tuple(part for part in MODEL_PARTS if any(part in parts_of(path) for path in changed))
     in_heat = [path for path in changed if through_heat(path)]
-    if any(path not in in_heat and parts_of(path) == PARTS for path in changed):
+    if any(path not in in_heat and parts_of(path) == MODEL_PARTS for path in changed):
         return None
     if case.losses.bearing_drag == "constant" and any(".loss_factors" in path for path in in_heat):
         return None
@@ -137,16 +56,15 @@ def reanalysis(case: Case, changed: Collection[str]) -> Reanalysis | None:
     return Reanalysis(case, parts, "shifted" if shifted else "marched")
 
 
-def parts_of(path: str) -> tuple[Part, ...]:
+def parts_of(path: str) -> tuple[ModelPart, ...]:
     """Parts of the model that have to be solved again when the value at ``path`` changes."""
-    return next(
-        (parts for paths, parts in SOLVED.items() if any(is_under(path, entry) for entry in paths)), PARTS
-    )
+    stated = (effect.solved for effect in reversed(effects_at(Case, path)))
+    return next((parts for parts in stated if parts is not None), MODEL_PARTS)
 
 
 def through_heat(path: str) -> bool:
     """Whether an input reaches the loads through temperatures and drag torques alone."""
-    return any(is_under(path, entry) for entry in THROUGH_HEAT)
+    return any(effect.through_heat for effect in effects_at(Case, path))
 
 
 ACTUATOR = ("actuator_force", "shift_travel")
@@ -158,7 +76,7 @@ kelvin moves a check on loads by up to 0.001 of its limit, `verdicts.LEAST_MOVE`
 
 def modified_rig(
     stated: SolvedRig, again: Reanalysis, motor_losses: Array | None
-) -> tuple[SolvedRig, tuple[Part, ...]]:
+) -> tuple[SolvedRig, tuple[ModelPart, ...]]:
     """The modified rig and the parts that were solved again; all others are those of the stated rig.
 
     motor_losses : torque of all losses at the motor over the stated time run [N m], (n,)
@@ -168,7 +86,7 @@ def modified_rig(
     points = list(stated.points)
     if "coupling" in parts:
         points = [coupled_again(rig, stated, number) for number in range(len(stated.points))]
-        parts = PARTS if stated.run is not None and _loads_move(points, stated.points) else parts
+        parts = MODEL_PARTS if stated.run is not None and _loads_move(points, stated.points) else parts
     run, loads = stated.run, stated.loads
     if run is None:
         return with_records(rig, points, None), tuple(part for part in parts if part == "coupling")
@@ -188,7 +106,7 @@ def _time_run(
     again: Reanalysis,
     responses: tuple[DynamicRun, Curves],
     motor_losses: Array | None,
-) -> tuple[TimeResponse, tuple[Part, ...]]:
+) -> tuple[TimeResponse, tuple[ModelPart, ...]]:
     """The time run of the modified rig and the parts that were solved again.
 
     responses : of the stated rig, and the curves of the modified one
@@ -218,7 +136,7 @@ def _loads_move(points: Sequence[PointResult], stated: Sequence[PointResult]) ->
     )
 
 
-def _rig_like(stated: Rig, case: Case, parts: tuple[Part, ...]) -> Rig:
+def _rig_like(stated: Rig, case: Case, parts: tuple[ModelPart, ...]) -> Rig:
     """The rig of ``case``; it takes over what the stated rig has computed and the change does not touch."""
     rig = replace(build_rig(case, stated.fidelity), tooth_influence=stated.tooth_influence)
     if "coupling" not in parts or same_housings(rig, stated):

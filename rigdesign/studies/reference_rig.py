@@ -8,6 +8,7 @@ from threadpoolctl import threadpool_limits
 from dynamics.vibration.time_response import TimeResponse
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.base.fidelity import Fidelity
+from rigdesign.case.fields import ModelPart
 from rigdesign.case.model import Case
 from rigdesign.coupling.fixed_point import Anderson
 from rigdesign.coupling.iteration import initial_state
@@ -24,7 +25,7 @@ from rigdesign.results.units import ZERO
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.main import Progress, solve_case
 from rigdesign.run.solver_errors import solver_errors
-from rigdesign.studies.modified_rig import Part, Reanalysis, modified_rig, with_records
+from rigdesign.studies.modified_rig import Reanalysis, modified_rig, with_records
 from rigdesign.studies.shifted_run import Array, losses_on_motor, peaks_only
 
 
@@ -55,7 +56,7 @@ class ReanalysisResult:
 
     checks: Sequence[Check]
     max_temperature_degC: float | None  # noqa: N815
-    parts: tuple[Part, ...]
+    parts: tuple[ModelPart, ...]
 
 
 def solve_reference(
@@ -98,7 +99,7 @@ def reanalysed(
 
 
 def result_of(
-    solved: SolvedRig, evaluate: Callable[[SolvedRig], Sequence[Check]], parts: tuple[Part, ...] = ()
+    solved: SolvedRig, evaluate: Callable[[SolvedRig], Sequence[Check]], parts: tuple[ModelPart, ...] = ()
 ) -> ReanalysisResult:
     """The checks of a solved rig and its highest temperature."""
     hottest = max((found.highest - ZERO for found in solved.temperatures), default=None)

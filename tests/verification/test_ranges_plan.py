@@ -18,6 +18,7 @@ import pytest
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
+from rigdesign.case.fields import MODEL_PARTS, ModelPart
 from rigdesign.case.loader import changed_together
 from rigdesign.case.paths import Slot, known_paths, slot_at
 from rigdesign.case.provenance import item_name, take_off
@@ -31,7 +32,7 @@ from rigdesign.studies.assumed_ranges import (
     solve_end,
     solve_stated,
 )
-from rigdesign.studies.modified_rig import PARTS, Part, parts_of
+from rigdesign.studies.modified_rig import parts_of
 from rigdesign.studies.reference_rig import Reference
 from tests.builders.checks import check, limit_of, rule_ids
 from tests.builders.paths import CASES
@@ -162,16 +163,16 @@ def ends(reference: Reference, path: str) -> tuple[EndResult, EndResult] | None:
         except CaseError:
             continue
 
-        def solved(parts: tuple[Part, ...], changed: Case = changed, other: object = other) -> EndResult:
+        def solved(parts: tuple[ModelPart, ...], changed: Case = changed, other: object = other) -> EndResult:
             end = RangeEnd(
                 path=path, together_with=(), end="low", value=str(other), stated=str(value), parts=parts, case=changed
             )  # fmt: skip
             return solve_end(end, reference=reference)
 
-        full = solved(PARTS)
+        full = solved(MODEL_PARTS)
         if full.error is None:
             parts = parts_of(path)
-            return (full if parts == PARTS else solved(parts)), full
+            return (full if parts == MODEL_PARTS else solved(parts)), full
     return None
 
 
@@ -234,7 +235,7 @@ def test_a_path_nobody_lists_is_solved_in_full_and_decides(path: str) -> None:
     reference, _ = settled("loop_1to1")
     text = check("oil.cooler", "limits.oil.cooler_power_maximum")
     assert depends(reference.case, text, path)
-    assert parts_of(path) == PARTS or "seals" in path
+    assert parts_of(path) == MODEL_PARTS or "seals" in path
 
 
 def test_ambient_from_5_to_40_degrees_is_not_left_out(tmp_path: Path) -> None:
@@ -248,7 +249,7 @@ def test_ambient_from_5_to_40_degrees_is_not_left_out(tmp_path: Path) -> None:
     checks = [with_assumptions(case, check(key, limit_of(key))) for key in rule_ids(case)]
     found, left = plan(case, checks)
     assert [end.value for end in found if end.path == "ambient.temperature"] == ["5 degC", "40 degC"]
-    assert all(end.parts == PARTS for end in found if end.path == "ambient.temperature")
+    assert all(end.parts == MODEL_PARTS for end in found if end.path == "ambient.temperature")
     assert "ambient.temperature" not in {row.path for row in left}
     deciding = {one.id for one in checks if "ambient.temperature" in one.assumptions}
     assert deciding >= {

@@ -7,11 +7,12 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.case import Case
+from rigdesign.case.fields import MODEL_PARTS
 from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.loads import StageLoad
 from rigdesign.run.main import run_case
 from rigdesign.studies.from_base import FromBase
-from rigdesign.studies.modified_rig import PARTS, Reanalysis, modified_rig
+from rigdesign.studies.modified_rig import Reanalysis, modified_rig
 from rigdesign.studies.reference_rig import Reference, restored, solve_reference
 
 INLET = "gearboxes.test.oil.inlet_temperature"
@@ -30,7 +31,7 @@ class Both:
 def both(reference: Reference, stated: SolvedRig, case: Case) -> Both:
     rigs = []
     for how in ("shifted", "marched"):
-        solved, parts = modified_rig(stated, Reanalysis(case, PARTS, how), reference.motor_losses)
+        solved, parts = modified_rig(stated, Reanalysis(case, MODEL_PARTS, how), reference.motor_losses)
         assert ("time run" in parts) == (how == "marched")
         rigs.append(solved)
     return Both(*rigs)

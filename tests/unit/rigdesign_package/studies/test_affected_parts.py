@@ -3,7 +3,8 @@
 import pytest
 
 from rigdesign import Case, load_case
-from rigdesign.studies.modified_rig import PARTS, Reanalysis, reanalysis
+from rigdesign.case.fields import MODEL_PARTS
+from rigdesign.studies.modified_rig import Reanalysis, reanalysis
 
 INLET = "gearboxes.test.oil.inlet_temperature"
 
@@ -14,9 +15,9 @@ def prototype() -> Case:
 
 
 def test_heat_moves_all_parts_and_shifts_the_time_run(prototype: Case) -> None:
-    assert reanalysis(prototype, [INLET]) == Reanalysis(prototype, PARTS, "shifted")
+    assert reanalysis(prototype, [INLET]) == Reanalysis(prototype, MODEL_PARTS, "shifted")
     more = [INLET, "ambient.temperature", "limits.oil.flow_maximum"]
-    assert reanalysis(prototype, more) == Reanalysis(prototype, PARTS, "shifted")
+    assert reanalysis(prototype, more) == Reanalysis(prototype, MODEL_PARTS, "shifted")
 
 
 def test_limits_move_checks_alone(prototype: Case) -> None:
@@ -25,7 +26,7 @@ def test_limits_move_checks_alone(prototype: Case) -> None:
 
 def test_what_marches_the_run_marches_it_together_with_heat(prototype: Case) -> None:
     found = reanalysis(prototype, [INLET, "schedule.stages.run_up.duration"])
-    assert found == Reanalysis(prototype, PARTS, "marched")
+    assert found == Reanalysis(prototype, MODEL_PARTS, "marched")
 
 
 @pytest.mark.parametrize(
@@ -37,17 +38,17 @@ def test_other_inputs_are_solved_in_full(prototype: Case, path: str) -> None:
 
 def test_a_bracing_that_follows_the_oil_is_marched(prototype: Case) -> None:
     drifting = prototype.with_value("drivetrain.bracing.temperature_drift", 0.002)
-    assert reanalysis(drifting, [INLET]) == Reanalysis(drifting, PARTS, "marched")
+    assert reanalysis(drifting, [INLET]) == Reanalysis(drifting, MODEL_PARTS, "marched")
 
 
 def test_a_bracing_that_holds_its_twist_is_marched(prototype: Case) -> None:
     held = prototype.with_value("drivetrain.bracing.mode", "twist_held")
-    assert reanalysis(held, [INLET]) == Reanalysis(held, PARTS, "marched")
+    assert reanalysis(held, [INLET]) == Reanalysis(held, MODEL_PARTS, "marched")
 
 
 def test_a_constant_bearing_drag_is_part_of_the_drivetrain(prototype: Case) -> None:
     constant = prototype.with_value("losses.bearing_drag", "constant")
     assert reanalysis(constant, ["gearboxes.test.loss_factors.bearing"]) is None
     assert reanalysis(prototype, ["gearboxes.test.loss_factors.bearing"]) == Reanalysis(
-        prototype, PARTS, "shifted"
+        prototype, MODEL_PARTS, "shifted"
     )

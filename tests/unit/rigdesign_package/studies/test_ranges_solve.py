@@ -9,11 +9,12 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.case import Case
+from rigdesign.case.fields import MODEL_PARTS, ModelPart
 from rigdesign.results.check import Check
 from rigdesign.run.main import run_case
 from rigdesign.studies import modified_rig
 from rigdesign.studies.assumed_ranges import EndResult, RangeEnd, plan, solve_end, solve_stated, with_ranges
-from rigdesign.studies.modified_rig import PARTS, Part, parts_of
+from rigdesign.studies.modified_rig import parts_of
 from rigdesign.studies.reference_rig import Reference
 from tests.builders.paths import CASES
 
@@ -61,7 +62,7 @@ def loop(tmp_path_factory: pytest.TempPathFactory) -> tuple[Reference, EndResult
     return solve_stated(written(tmp_path_factory.mktemp("loop"), LOOP))
 
 
-def end(case: Case, path: str, value: str, *more: Part) -> RangeEnd:
+def end(case: Case, path: str, value: str, *more: ModelPart) -> RangeEnd:
     return RangeEnd(
         path=path, together_with=(), end="low", value=value, stated="", case=case.with_value(path, value),
         parts=(*parts_of(path), *more),
@@ -93,7 +94,7 @@ def test_losses_need_no_march_for_the_torque_of_the_motor(
     is listed, gears that become so much warmer are solved in full: that is switched off here.
     """
     reference, stated = loop
-    assert solve_end(end(reference.case, path, value), reference=reference).parts == PARTS
+    assert solve_end(end(reference.case, path, value), reference=reference).parts == MODEL_PARTS
     monkeypatch.setattr(modified_rig, "LOADS_MOVE", {})
     quick = solve_end(end(reference.case, path, value), reference=reference)
     full = solve_end(end(reference.case, path, value, "time run"), reference=reference)

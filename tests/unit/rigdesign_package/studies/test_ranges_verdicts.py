@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import pytest
 
+from rigdesign.case.fields import MODEL_PARTS
 from rigdesign.report.figures.ranges import margins_figure
 from rigdesign.report.pages.report import report_html
 from rigdesign.report.results_json import results_document
 from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 from rigdesign.studies.assumed_ranges import CheckAtEnd, EndResult, RangeEnd, joined
-from rigdesign.studies.modified_rig import PARTS, parts_of
+from rigdesign.studies.modified_rig import parts_of
 from tests.builders.report import make_check, make_result
 
 GAP, OIL = "gearboxes.test.seals.gap", "gearboxes.test.oil.flow"
@@ -138,14 +139,14 @@ def test_temperatures_and_shifts_add_up_over_the_inputs() -> None:
         ("limits.dynamics.resonance_distance_minimum", ("curves",)),
         ("limits.dynamics.dynamic_factor_maximum", ()),
         ("schedule.stages.run_up.duration", ("time run",)),
-        ("gearboxes.test.oil.inlet_temperature", PARTS),
-        ("gearboxes.test.heat_split.mesh_into_gears", PARTS),
+        ("gearboxes.test.oil.inlet_temperature", MODEL_PARTS),
+        ("gearboxes.test.heat_split.mesh_into_gears", MODEL_PARTS),
         ("gearboxes.test.housing.wall_thickness", ("coupling",)),
         ("gearboxes.test.bearings.pinion_front.feed_share", ("coupling",)),
-        ("gearboxes.test.bearings.pinion_front.position", PARTS),
-        ("gearboxes.test.meshes.main.damping", PARTS),
+        ("gearboxes.test.bearings.pinion_front.position", MODEL_PARTS),
+        ("gearboxes.test.meshes.main.damping", MODEL_PARTS),
         ("losses.friction.lubricant_factor", ("coupling",)),
-        ("a.key.nobody.has.thought.of", PARTS),
+        ("a.key.nobody.has.thought.of", MODEL_PARTS),
     ],
 )
 def test_an_input_solves_again_what_it_touches_and_an_unknown_one_everything(
