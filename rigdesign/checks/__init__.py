@@ -1,7 +1,6 @@
 """Design checks: every registered rule held against the solved rig."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
 
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
@@ -14,7 +13,7 @@ from rigdesign.checks.rules import joined, unjudged, with_doubt, with_error, wit
 from rigdesign.postprocessing.hand_calculation import disagreeing
 from rigdesign.postprocessing.solved_rig import LawSpread, SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.result import Finding
+from rigdesign.results.result import Finding, HandCalculation
 from rigdesign.rig.model import Rig
 
 __all__ = ["all_checks", "estimated_checks", "held_checks", "mesh_checks", "of_other_law"]
@@ -22,10 +21,10 @@ __all__ = ["all_checks", "estimated_checks", "held_checks", "mesh_checks", "of_o
 load_topics(__name__, __path__)
 
 
-def all_checks(solved: SolvedRig, hand: Sequence[Mapping[str, Any]] = ()) -> list[Check]:
+def all_checks(solved: SolvedRig, hand: Sequence[HandCalculation] = ()) -> list[Check]:
     """Every check in the order of the report with its error, what makes it doubtful and the inputs it depends on.
 
-    hand : rows of `records.hand.hand_checks`
+    hand : calculations by hand of this rig
     """
     causes, case = list(disagreeing(hand)), solved.case
     checks = (_with_doubts(case, check, causes) for check in estimated_checks(solved))

@@ -1,8 +1,7 @@
 """Numbers an engineer can redo on paper, next to the key results."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -11,6 +10,8 @@ from rigdesign.case.geometry import seals_on
 from rigdesign.coupling.expansion import centrifugal_expansion
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.postprocessing.solved_rig import SolvedRig
+from rigdesign.results.quantity import Records
+from rigdesign.results.result import HandCalculation
 from rigdesign.results.units import MM, UM
 from rigdesign.results.warm_gearbox import WarmGearbox
 from thermal.conduction.balance import HeatFlow
@@ -50,25 +51,25 @@ DISAGREES = 0.25
 """Deviation from which a calculation by hand is a cause to doubt the checks that its quantity enters."""
 
 
-def disagreeing(rows: Sequence[Mapping[str, Any]]) -> Iterator[tuple[tuple[str, ...], str]]:
-    """(patterns of check ids, cause of doubt) of every row whose two numbers do not agree."""
-    for row in rows:
-        patterns = next((ids for start, ids in ENTERS.items() if row["quantity"].startswith(start)), ())
-        if patterns and abs(row["computed"] - row["by_hand"]) > DISAGREES * abs(row["by_hand"]):
-            numbers = f"{row['computed']:.3g} {row['unit']}, by hand {row['by_hand']:.3g} {row['unit']}"
-            yield patterns, f"{row['quantity']}: {numbers}"
+def disagreeing(calculations: Sequence[HandCalculation]) -> Iterator[tuple[tuple[str, ...], str]]:
+    """(patterns of check ids, cause of doubt) of every one whose two numbers do not agree."""
+    for own in calculations:
+        patterns = next((ids for start, ids in ENTERS.items() if own.quantity.startswith(start)), ())
+        if patterns and abs(own.computed - own.by_hand) > DISAGREES * abs(own.by_hand):
+            numbers = f"{own.computed:.3g} {own.unit}, by hand {own.by_hand:.3g} {own.unit}"
+            yield patterns, f"{own.quantity}: {numbers}"
 
 
-def hand_checks(solved: SolvedRig) -> list[dict[str, Any]]:
-    """quantity, computed, by_hand, unit, formula; in the order of the report."""
-    return [*_loads(solved), *_losses(solved), *_expansion(solved)]
+def hand_checks(solved: SolvedRig) -> Records[HandCalculation]:
+    """In the order of the report."""
+    return Records([*_loads(solved), *_losses(solved), *_expansion(solved)])
 
 
-def _row(quantity: str, computed: float, by_hand: float, unit: str, formula: str) -> dict[str, Any]:
-    return {"quantity": quantity, "computed": computed, "by_hand": by_hand, "unit": unit, "formula": formula}
+def _row(quantity: str, computed: float, by_hand: float, unit: str, formula: str) -> HandCalculation:
+    return HandCalculation(quantity=quantity, computed=computed, by_hand=by_hand, unit=unit, formula=formula)
 
 
-def _loads(solved: SolvedRig) -> list[dict[str, Any]]:
+def _loads(solved: SolvedRig) -> list[HandCalculation]:
     last, rig = solved.test.last, solved.rig
     rows = []
     for model in last.models:
@@ -107,7 +108,7 @@ def mean_gap(model: MeshModel) -> float:
     return float(np.average(law.gap[:, active], weights=law.stiffness[:, active]))
 
 
-def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
+def _losses(solved: SolvedRig) -> list[HandCalculation]:
     rows = []
     for placed in solved.test.last.losses:
         details = placed.loss.details
@@ -131,10 +132,7 @@ def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
                 )
             )  # fmt: skip
     for balance in solved.cooling:
-        given = math.fsum(
-            (balance.losses, balance.pump, balance.heater, balance.circulation, balance.machines)
-        )
-        taken = math.fsum((balance.cooler, balance.room, balance.tanks))
+        given, taken = balance.put_in, balance.taken_out
         rows.append(
             _row(f"heat carried away, stage {balance.stage}", taken, given, "W",
                  "cooler + room = losses + jets of the pump + heaters")
@@ -142,7 +140,7 @@ def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
     return rows
 
 
-def _expansion(solved: SolvedRig) -> list[dict[str, Any]]:
+def _expansion(solved: SolvedRig) -> list[HandCalculation]:
     rows = []
     for warm in solved.warm:
         rows += [

@@ -5,6 +5,9 @@ from typing import Any
 
 from rigdesign.base.output_folder import file_stem
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics, RampHistory
+from rigdesign.results.lateral import LateralVibration
+from rigdesign.results.loads import EventRecord
+from rigdesign.results.quantity import value_in_unit
 from rigdesign.results.thermal import ExpansionResult, OilPowerCurve, TransientCurve, TransientResult
 
 Columns = dict[str, list[Any]]
@@ -67,6 +70,8 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
                     "quasi-static [N/mm2]": history.quasi_static_MPa,
                 },
             )
+        if gearbox.loaded_contact is not None:
+            yield file_stem("contact_pattern", name), _contact_pattern(gearbox.loaded_contact["pattern"])
     for turn in dynamics.tooth_histories:
         yield (
             file_stem("tooth_history", turn.gear),
@@ -114,9 +119,10 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
 
 
 def _dynamic_factor(gearbox: GearboxDynamics) -> Columns:
-    """K_V(n): the curves of all torques below each other, distinguished by the last column."""
+    """K_V(n): the curves of all torques below each other, distinguished by their column."""
     header = (
-        "speed [rpm]", "max/mean [1]", "half peak-to-peak [1]", "ISO 6336-1 method B [1]", "method", "torque",
+        "speed [rpm]", "max/mean [1]", "half peak-to-peak [1]", "ISO 6336-1 method B [1]", "method", "torque", "motion",
+        "other branch [1]",
     )  # fmt: skip
     curves = {gearbox.torque: gearbox.dynamic_factor, **gearbox.dynamic_factor_at}
     return _columns(
@@ -124,12 +130,23 @@ def _dynamic_factor(gearbox: GearboxDynamics) -> Columns:
         (
             (
                 point.speed_rpm, point.simulated, point.simulated_half_peak_to_peak,
-                point.iso_6336_1_method_b, point.method, torque,
+                point.iso_6336_1_method_b, point.method, torque, point.motion, point.other_branch,
             )
             for torque, points in curves.items()
             for point in points
         ),
     )  # fmt: skip
+
+
+def _contact_pattern(pattern: Mapping[str, Any]) -> Columns:
+    """Pressure on the flank of the pinion, a row for every point."""
+    face, angles = pattern["face_mm"], pattern["rolling_angle_deg"]
+    return {
+        "rolling angle [deg]": [angle for row in angles for angle in row],
+        "position from mid-face [mm]": [place for _ in angles for place in face],
+        "pressure [N/mm2]": [pressure for row in pattern["pressure_MPa"] for pressure in row],
+        "at a tip edge": [edge for row in pattern["edge"] for edge in row],
+    }
 
 
 def _ramp(ramp: RampHistory) -> Columns:
@@ -234,12 +251,27 @@ def _quantity_and_unit(key: str) -> tuple[str, str]:
     return (quantity, unit) if unit in ("mrad", "um", "mm") else (key, "1")
 
 
-def lateral_curves(lateral: Mapping[str, Any] | None) -> dict[str, Columns]:
+def event_curves(events: Iterable[EventRecord]) -> dict[str, Columns]:
+    """Torques of every event in envelope windows."""
+    return {
+        file_stem("event", event.name): {
+            "time [s]": event.time,
+            **{
+                f"{curve.place} {curve.quantity} {bound} [Nm]": values
+                for curve in event.curves
+                for bound, values in (("least", curve.least), ("greatest", curve.greatest))
+            },
+        }
+        for event in events
+        if event.time
+    }
+
+
+def lateral_curves(lateral: LateralVibration | None) -> dict[str, Columns]:
     """Orbit of every bearing over speed, by header; nothing for shafts that only twist."""
     if lateral is None:
         return {}
-    curve = lateral["curve"]
-    columns: Columns = {"speed [rpm]": curve["speed_rpm"]}
-    for bearing in curve["bearings"]:
-        columns[f"orbit {bearing['bearing']} [um]"] = bearing["orbit_um"]
+    columns: Columns = {"speed [rpm]": list(value_in_unit(lateral.curve, "speed"))}
+    for bearing in lateral.curve.bearings:
+        columns[f"orbit {bearing.bearing} [um]"] = list(value_in_unit(bearing, "orbit"))
     return {"whirl": columns}

@@ -1,9 +1,10 @@
 """Dynamic results of a run, as they stand in results.json."""
 
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from rigdesign.results.check import Role
+from rigdesign.results.quantity import Quantity
 
 StressSource = Literal["finite-element influence numbers", "ISO 6336-3 form and stress correction factors"]
 FROM_INFLUENCE: StressSource = "finite-element influence numbers"
@@ -111,6 +112,11 @@ class GearboxDynamics:
     root_stress: {pinion, wheel:
     {rolling_angle_deg, highest_MPa, mid_face_MPa, largest_MPa, at_face_mm, stress_ratio}}, strain_gauges: rows
     of the gauges}; None where the teeth are analytic or carry no torque."""
+
+    @property
+    def largest_dynamic_factor(self) -> Annotated[float | None, Quantity()]:
+        """Of ``dynamic_factor``, simulated; None without a point."""
+        return max((point.simulated for point in self.dynamic_factor), default=None)
 
 
 @dataclass(frozen=True, kw_only=True)

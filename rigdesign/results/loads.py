@@ -3,12 +3,13 @@ carries."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import Annotated, Literal, Protocol
 
 from dynamics.rotor.bracing import BracingDrift
 from dynamics.rotor.torsional_modes import DampingRecord, LoopMode
 from rigdesign.results.check import Role
 from rigdesign.results.dynamics import FROM_FACTORS, StressSource
+from rigdesign.results.quantity import NewtonMetres, Quantity, Revolutions, Seconds
 from rigdesign.results.teeth import ToothHistory
 
 
@@ -261,9 +262,14 @@ class SplineStress:
 
 # Loads of the rig in an event: SI records.
 
-Quantity = Literal["coupling torque", "shaft torque", "seat torque", "mesh torque", "bearing force"]
+Load = Literal["coupling torque", "shaft torque", "seat torque", "mesh torque", "bearing force"]
 NOT_WITHIN = "not within"
 """How the reason of a check begins whose value is the time followed without the event it waits for: a lower bound."""
+
+
+LEAST_SHARE = 0.05
+"""Part of a peak below which what was there before is no measure of it."""
+ShearStress = Annotated[float | None, Quantity("MPa")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -275,27 +281,37 @@ class EventPeak:
     ``gearbox.bearing``."""
     part: str
     """The same, of a section its shaft."""
-    quantity: Quantity
+    quantity: Load
     before: float
     """Mean before the event."""
     peak: float
-    time: float
-    """From the instant of the event [s]."""
-    shear_stress: float | None = None
-    """Nominal torsional stress at the surface of a shaft under the peak [Pa]."""
+    time: Seconds
+    """From the instant of the event."""
+    shear_stress: ShearStress = None
+    """Nominal torsional stress at the surface of a shaft under the peak."""
+
+    @property
+    def unit(self) -> Annotated[str, Quantity()]:
+        """Of ``before`` and ``peak``."""
+        return "N" if self.quantity == "bearing force" else "N m"
+
+    @property
+    def factor(self) -> Annotated[float | None, Quantity()]:
+        """Peak over what was there before; None where that was next to nothing."""
+        return self.peak / abs(self.before) if abs(self.before) > LEAST_SHARE * self.peak else None
 
 
 @dataclass(frozen=True, kw_only=True)
 class PassingPeak:
-    """Largest amount of a torque at one place during run-down through the resonances [N m]."""
+    """Largest amount of a torque at one place during run-down through the resonances."""
 
     place: str
     part: str
-    quantity: Quantity
-    peak: float
-    speed: float
-    """Stated speed at which it is passed [rad/s]."""
-    shear_stress: float | None = None
+    quantity: Load
+    peak: NewtonMetres
+    speed: Revolutions
+    """Stated speed at which it is passed."""
+    shear_stress: ShearStress = None
     """As of `EventPeak`."""
 
 
@@ -305,50 +321,50 @@ class Reversal:
 
     mesh: str
     open_share: float
-    """Share of the time without contact [-]."""
-    other_flank: float
-    """Most torque on the flanks that carry nothing before [N m]."""
+    """Share of the time without contact."""
+    other_flank: NewtonMetres
+    """Most torque on the flanks that carry nothing before."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class EventCurve:
-    """Extremes of a torque in envelope windows [N m]."""
+    """Extremes of a torque in envelope windows."""
 
     place: str
-    quantity: Quantity
-    least: list[float] = field(repr=False)
-    greatest: list[float] = field(repr=False)
+    quantity: Load
+    least: Annotated[list[float], Quantity("N m")] = field(repr=False)
+    greatest: Annotated[list[float], Quantity("N m")] = field(repr=False)
 
 
 @dataclass(frozen=True, kw_only=True)
 class EventRecord:
-    """One event."""
+    """One event; what its kind does not have is None or empty."""
 
     name: str
     kind: str
-    speed: float
-    """Of the test gear's shaft as stated [rad/s]."""
-    torque: float
-    """As stated [N m]."""
+    speed: Revolutions
+    """Of the test gear's shaft as stated."""
+    torque: NewtonMetres
+    """As stated."""
     what: str
     """In words: teeth lost, brake torque."""
     peaks: tuple[EventPeak, ...] = ()
     passing: tuple[PassingPeak, ...] = ()
     """Of a stop, from the periodic responses over speed."""
     reversals: tuple[Reversal, ...] = ()
-    tripped: float | None = None
-    """Time until the limit of the monitor is crossed [s]."""
-    untripped: float | None = None
-    """Time for which a monitor was watched that never tripped [s]."""
-    standstill: float | None = None
-    """Time to standstill, from the trip or the stop on [s]."""
+    tripped: Annotated[float | None, Quantity("s")] = None
+    """Time until the limit of the monitor is crossed."""
+    untripped: Annotated[float | None, Quantity("s")] = None
+    """Time for which a monitor was watched that never tripped."""
+    standstill: Annotated[float | None, Quantity("s")] = None
+    """Time to standstill, from the trip or the stop on."""
     dynamic_factor: dict[str, float] = field(default_factory=dict)
     """K_V by mesh, of an overspeed."""
     resonance: str = ""
     """Nearest resonance of an overspeed, in words."""
     resonance_distance: float | None = None
-    """Its distance as a share of the speed [-]."""
-    time: list[float] = field(default_factory=list, repr=False)
-    """End of each envelope window of the curves [s]."""
+    """Its distance as a share of the speed."""
+    time: Annotated[list[float], Quantity("s")] = field(default_factory=list, repr=False)
+    """End of each envelope window of the curves."""
     curves: tuple[EventCurve, ...] = ()
     notes: tuple[str, ...] = ()

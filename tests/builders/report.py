@@ -14,7 +14,14 @@ from rigdesign.results.dynamics import (
     RampHistory,
     RootStressHistory,
 )
-from rigdesign.results.result import CouplingHistory, Finding, RunResult
+from rigdesign.results.housing import CoolingBalance
+from rigdesign.results.result import (
+    CouplingHistory,
+    Finding,
+    HandCalculation,
+    IterationResidual,
+    RunResult,
+)
 from rigdesign.results.thermal import (
     ExpansionResult,
     HeatRow,
@@ -469,41 +476,35 @@ def make_result(**changes):
             )
         ],
         "cooler": [
-            {
-                "stage": "dwell",
-                "losses_W": 12265.0,
-                "pump_W": 14.0,
-                "heater_W": 600.0,
-                "cooler_W": 10500.0,
-                "room_W": 2379.0,
-                "open_W": 0.0,
-                "flow_l_min": 26.0,
-            }
+            CoolingBalance(
+                stage="dwell",
+                losses=12265.0,
+                pump=14.0,
+                heater=600.0,
+                cooler=10500.0,
+                room=2379.0,
+                stored=None,
+                not_heat=0.0,
+                flow=26.0 / 6e4,
+            )
         ],
         "thermal": [thermal],
         "expansion": [expansion],
         "coupling": [
             CouplingHistory(
                 stage="dwell",
-                iterations=4,
-                residuals=[
-                    {
-                        "temperature_K": 80.0 / 20**n,
-                        "growth_um": 300.0 / 18**n,
-                        "torque_relative": 0.02 / 12**n,
-                    }
+                residuals=tuple(
+                    IterationResidual(
+                        temperature=80.0 / 20**n, expansion=3e-4 / 18**n, torque_relative=0.02 / 12**n
+                    )
                     for n in range(4)
-                ],
+                ),
             )
         ],
         "hand_checks": [
-            {
-                "quantity": "shaft growth, pinion",
-                "computed": 0.53,
-                "by_hand": 0.55,
-                "unit": "mm",
-                "formula": "alpha L dT",
-            }
+            HandCalculation(
+                quantity="shaft growth, pinion", computed=0.53, by_hand=0.55, unit="mm", formula="alpha L dT"
+            )
         ],
         "assumptions": [
             AssumptionRecord(

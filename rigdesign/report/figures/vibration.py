@@ -25,6 +25,8 @@ from rigdesign.report.palette import (
     CurveStyle,
     curve_style,
 )
+from rigdesign.results.lateral import BearingOrbit, LateralVibration
+from rigdesign.results.quantity import value_in_unit
 from rigdesign.results.vibration import sense_of_whirl
 
 if TYPE_CHECKING:
@@ -279,42 +281,42 @@ def _held_lines(axes: "Axes", held: Mapping[str, float]) -> None:
         axes.axvline(speed, color=MUTED, linewidth=0.9, linestyle=(0, (7.0, 1.6, 1.4, 1.6)))
 
 
-def whirl_figure(lateral: Mapping[str, Any], limit: float | None) -> "Figure":
+def whirl_figure(lateral: LateralVibration, limit: float | None) -> "Figure":
     """Orbit (larger half axis, all shaft lines) of every bearing over speed [um], a plot for each gearbox.
 
     limit : most peak-to-peak motion over the diametral clearance
     """
-    curve = lateral["curve"]
-    boxes: dict[str, list[Mapping[str, Any]]] = {}
-    for bearing in curve["bearings"]:
-        boxes.setdefault(bearing["bearing"].split(".")[0], []).append(bearing)
+    boxes: dict[str, list[BearingOrbit]] = {}
+    for bearing in lateral.curve.bearings:
+        boxes.setdefault(bearing.bearing.split(".")[0], []).append(bearing)
+    speeds = value_in_unit(lateral.curve, "speed")
     height = 0.5 + 2.4 * len(boxes)
     figure = new_figure(height)
-    held = sorted({stage["speed_rpm"] for stage in lateral["stages"]})
+    held = sorted({value_in_unit(stage, "speed") for stage in lateral.stages})
     for axes, (box, bearings) in zip(
         figure.subplots(len(boxes), 1, squeeze=False)[:, 0], boxes.items(), strict=True
     ):
-        _orbits(axes, curve["speed_rpm"], bearings)
+        _orbits(axes, speeds, bearings)
         _limit(axes, bearings, limit)
         for speed in held:
             axes.axvline(speed, color=MUTED, linewidth=0.8, linestyle=":")
         finish(axes, "speed where the case counts it, n [rpm]", "orbit, 0-peak [µm]", f"Gearbox {words(box)}")
-        axes.set_xlim(0.0, curve["speed_rpm"][-1])
+        axes.set_xlim(0.0, speeds[-1])
         legend_right(axes)
     figure.subplots_adjust(left=0.085, right=0.74, top=1 - 0.32 / height, bottom=0.47 / height, hspace=0.45)
     return figure
 
 
-def _orbits(axes: "Axes", speeds: list[float], bearings: list[Mapping[str, Any]]) -> None:
+def _orbits(axes: "Axes", speeds: Sequence[float], bearings: list[BearingOrbit]) -> None:
     axes.set_yscale("log")
     for number, bearing in enumerate(bearings):
-        name = words(bearing["bearing"].split(".", 1)[1])
-        axes.plot(speeds, bearing["orbit_um"], **curve_style(number).drawn, label=name)
+        name = words(bearing.bearing.split(".", 1)[1])
+        axes.plot(speeds, value_in_unit(bearing, "orbit"), **curve_style(number).drawn, label=name)
 
 
-def _limit(axes: "Axes", bearings: list[Mapping[str, Any]], limit: float | None) -> None:
+def _limit(axes: "Axes", bearings: list[BearingOrbit], limit: float | None) -> None:
     """Half of the least clearance of a film, and what of it may be used."""
-    clearances = [bearing["clearance_um"] for bearing in bearings if bearing["clearance_um"]]
+    clearances = [value_in_unit(bearing, "clearance") for bearing in bearings if bearing.clearance]
     if not clearances:
         return
     radial = 0.5 * min(clearances)
