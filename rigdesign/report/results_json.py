@@ -10,8 +10,8 @@ from rigdesign.base.errors import WIDEST_PLACE, NotConvergedError, UsageError, s
 from rigdesign.base.json_text import to_plain, to_text
 from rigdesign.base.output_folder import write_whole
 from rigdesign.base.version import RESULTS_SCHEMA_VERSION, __version__
-from rigdesign.results.curve_files import with_references, without_references
-from rigdesign.results.document import as_shown, record_of
+from rigdesign.results.curve_files import PLACE, with_references, without_references
+from rigdesign.results.document import as_shown, record_of, schema_of
 from rigdesign.results.quantity import shown
 from rigdesign.results.result import RunResult
 from rigdesign.studies.stored_results import AGAIN, read_document
@@ -43,6 +43,29 @@ def results_document(result: RunResult, *, beside_files: bool = False) -> dict[s
         {"schema_version": RESULTS_SCHEMA_VERSION, "tool_version": __version__, **document}
     )
     return plain
+
+
+def results_schema() -> dict[str, Any]:
+    """JSON Schema of results.json, from the classes of the result."""
+    texts = {"type": "array", "items": {"type": "string"}}
+    field = {"type": "object", "properties": {"file": {"type": "string"}}, "required": ["file"]}
+    schema: dict[str, Any] = schema_of(
+        RunResult, {"fields": {"type": "array", "items": field}}, {"$ref": "#/$defs/Place"}
+    )
+    schema["properties"] = {
+        "schema_version": {"const": RESULTS_SCHEMA_VERSION},
+        "tool_version": {"type": "string"},
+        **schema["properties"],
+        "files": texts,
+    }
+    schema["required"] = [key for key in schema["properties"] if key not in ("fields", "files")]
+    records = schema["$defs"]
+    numbers = {"description": "Numbers of the rows in assumptions.", "type": "array", "items": {}}
+    records["Check"]["properties"]["assumptions"] = numbers
+    del records["AssumptionRecord"]["properties"]["decides"]
+    records["AssumptionRecord"]["required"].remove("decides")
+    records["Place"] = PLACE
+    return schema
 
 
 def read_result(path: Path) -> tuple[RunResult, Path]:

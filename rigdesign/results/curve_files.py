@@ -28,6 +28,22 @@ Cell = tuple[str, str, int]
 """File, column and row."""
 
 
+PLACE: Json = {
+    "description": "Where the values stand in a file of curves, or the columns of a list of records.",
+    "type": "object",
+    "properties": {
+        "file": {"type": "string"},
+        "column": {"type": "string"},
+        "columns": {},
+        "rows": {"type": "array", "items": {"type": "integer"}},
+        "width": {"type": "integer"},
+    },
+    "required": [],
+    "additionalProperties": False,
+}
+"""JSON Schema of what stands for a list."""
+
+
 def with_references(document: Json, curves: Mapping[str, Columns]) -> Json:
     """The document with every list that stands in a file as its place there; numbers as in ``curves``."""
     return _Places(curves).named(document)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, fields, is_dataclass
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
-from rigdesign.results.quantity import shown
+from rigdesign.results.quantity import Shown, shown
 
 Json = Any
 """What `json` reads and writes: objects, lists, texts, numbers, truth values, null."""
@@ -135,51 +135,66 @@ DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _NAMES = {bool: "boolean", int: "integer", float: "number", str: "string", type(None): "null"}
 
 
-def schema_of(kind: Any) -> Json:
-    """JSON Schema of a record and of everything in it; texts and numbers carry unit and meaning."""
-    definitions: dict[str, Json] = {}
-    root = _schema(kind, definitions)
-    return {"$schema": DRAFT, **root, "$defs": dict(sorted(definitions.items()))}
+def schema_of(kind: Any, instead: Mapping[str, Json], lists: Json) -> Json:
+    """JSON Schema of a record and of everything in it.
+
+    instead : schema of keys of the record itself that are written in another way; lists : of what may stand for a list
+    """
+    schemas = _Schemas(lists)
+    whole = schemas.of_record(kind, instead)
+    return {
+        "$schema": DRAFT,
+        **whole,
+        "$defs": {each.__name__: schemas.records[each] for each in schemas.ordered},
+    }
 
 
-def _schema(kind: Any, definitions: dict[str, Json]) -> Json:
-    origin, arguments = get_origin(kind) or kind, get_args(kind)
-    if origin is Annotated:
-        return _schema(arguments[0], definitions)
-    if origin in (Union, types.UnionType):
-        return {"anyOf": [_schema(each, definitions) for each in arguments]}
-    if origin is Literal:
-        return {"enum": list(arguments)}
-    if is_dataclass(kind):
-        return _definition(kind, definitions)
-    if origin in _NAMES:
-        return {"type": _NAMES[origin]}
-    if isinstance(origin, type) and issubclass(origin, Mapping):
+class _Schemas:
+    """Schemas of all classes in a record."""
+
+    def __init__(self, lists: Json) -> None:
+        self.lists = lists
+        self.records: dict[Any, Json] = {}
+
+    @property
+    def ordered(self) -> list[Any]:
+        """Classes by name."""
+        return sorted(self.records, key=lambda kind: str(kind.__name__))
+
+    def of_record(self, kind: Any, instead: Mapping[str, Json]) -> Json:
+        items = shown(kind).values()
+        properties = {item.key: instead.get(item.key) or self._property(item) for item in items}
         return {
             "type": "object",
-            "additionalProperties": _schema(arguments[1], definitions) if arguments else {},
-        }
-    if isinstance(origin, type) and issubclass(origin, Sequence):
-        items = arguments or _arguments(origin)
-        return {"type": "array", "items": _schema(items[0], definitions) if items else {}}
-    return {}
-
-
-def _definition(kind: Any, definitions: dict[str, Json]) -> Json:
-    name = kind.__name__
-    if name not in definitions:
-        definitions[name] = {}
-        items = shown(kind).values()
-        definitions[name] = {
-            "type": "object",
-            "description": (kind.__doc__ or "").strip().split("\n\n")[0].replace("\n", " "),
-            "properties": {item.key: _property(item.kind, item.quantity.unit, definitions) for item in items},
-            "required": [item.key for item in items],
+            "description": " ".join((kind.__doc__ or "").split("\n\n")[0].split()),
+            "properties": properties,
+            "required": list(properties),
             "additionalProperties": False,
         }
-    return {"$ref": f"#/$defs/{name}"}
 
+    def _property(self, item: Shown) -> Json:
+        found = self.of(item.kind)
+        return found if item.quantity.unit == "-" else {**found, "unit": item.quantity.unit}
 
-def _property(kind: Any, unit: str, definitions: dict[str, Json]) -> Json:
-    found = _schema(kind, definitions)
-    return found if unit == "-" else {**found, "unit": unit}
+    def of(self, kind: Any) -> Json:
+        """Of a type."""
+        origin, arguments = get_origin(kind) or kind, get_args(kind)
+        if origin is Annotated:
+            return self.of(arguments[0])
+        if origin in (Union, types.UnionType):
+            return {"anyOf": [self.of(each) for each in arguments]}
+        if origin is Literal:
+            return {"enum": list(arguments)}
+        if is_dataclass(kind):
+            if kind not in self.records:
+                self.records[kind] = {}
+                self.records[kind] = self.of_record(kind, {})
+            return {"$ref": f"#/$defs/{kind.__name__}"}
+        if origin in _NAMES:
+            return {"type": _NAMES[origin]}
+        if isinstance(origin, type) and issubclass(origin, Mapping):
+            return {"type": "object", "additionalProperties": self.of(arguments[1]) if arguments else {}}
+        if isinstance(origin, type) and issubclass(origin, Sequence):
+            items = arguments or _arguments(origin)
+            return {"anyOf": [{"type": "array", "items": self.of(items[0]) if items else {}}, self.lists]}
+        return {}
