@@ -189,7 +189,7 @@ class _Schemas:
             if kind not in self.records:
                 self.records[kind] = {}
                 self.records[kind] = self.of_record(kind, {})
-            return {"$ref": f"#/$defs/{kind.__name__}"}
+            return {"$ref": f"#/$defs/{origin.__name__}"}
         if origin in _NAMES:
             return {"type": _NAMES[origin]}
         if isinstance(origin, type) and issubclass(origin, Mapping):
