@@ -25,8 +25,8 @@ from rigdesign.postprocessing.tooth_history import (
     of_history,
 )
 from rigdesign.results.check import Check
-from rigdesign.results.dynamics import FROM_INFLUENCE
 from rigdesign.results.loads import RootStressPath
+from rigdesign.results.teeth import FROM_INFLUENCE
 from rigdesign.results.units import HOUR, MEGAPASCAL, MPA, NUMBER, RPM
 from rigdesign.rig.model import Rig
 

@@ -31,14 +31,13 @@ from rigdesign.postprocessing.spectra import held_spectra, waterfalls
 from rigdesign.postprocessing.tooth_history import bent_both_ways
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
 from rigdesign.results.loads import MeshLoads
+from rigdesign.results.quantity import Records
 from rigdesign.results.serialisation import dynamics as rows
 from rigdesign.results.serialisation.teeth import (
     dynamic_root_rows,
     flank_rating_row,
     loaded_contact_row,
     pair_share_row,
-    press_fit_row,
-    spline_stress_row,
     tooth_history_row,
 )
 from rigdesign.results.serialisation.vibration import (
@@ -93,8 +92,8 @@ def dynamics_section(solved: SolvedRig) -> DynamicsResult:
         campbell=campbell_row(vibration.campbell),
         section_torques=section_torque_rows(torques),
         dwell=dwell_row(dwell_record(solved, torques)),
-        press_fits=[press_fit_row(found) for found in solved.press_fits],
-        splines=[spline_stress_row(found) for found in solved.splines],
+        press_fits=Records(solved.press_fits),
+        splines=Records(solved.splines),
         pair_shares=[pair_share_row(found) for found in pair_shares(rig, run)],
         waterfalls=[waterfall_row(found) for found in waterfalls(rig, run)],
         spectra=[spectrum_row(found) for found in held_spectra(rig, run)],
@@ -121,14 +120,14 @@ def _mesh_section(solved: SolvedRig, run: DynamicRun, mesh: int, loads: MeshLoad
             for other, (_, curve) in run.curves.named.items()
             if other != main
         },
-        stage_loads=[rows.stage_load_row(load) for load in loads.stage_loads],
+        stage_loads=Records(loads.stage_loads),
         dynamic_torque_peak_Nm=loads.torque_peak,
         iso_factors=_flat(asdict(iso)),
-        lift_off=[rows.contact_loss_row(loss) for loss in loads.contact_losses],
-        resonances=[rows.resonance_row(resonance) for resonance in loads.resonances],
-        unsolved=[rows.unsolved_row(speed) for speed in loads.unsolved],
+        lift_off=Records(loads.contact_losses),
+        resonances=Records(loads.resonances),
+        unsolved=Records(loads.unsolved),
         root_stress=[rows.root_stress_row(path) for path in loads.root_stress],
-        root_stress_factor=[rows.root_ratio_row(ratio) for ratio in loads.root_stress_ratios],
+        root_stress_factor=Records(loads.root_stress_ratios),
         geometry=rows.geometry_row(rig.pairs[name], solved.test.last.models[mesh]),
         flank_ratings=[flank_rating_row(rating) for rating in flank_ratings(rig, solved.points, mesh)],
         loaded_contact=None if contact is None else loaded_contact_row(contact),

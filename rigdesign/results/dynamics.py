@@ -1,15 +1,19 @@
 """Dynamic results of a run, as they stand in results.json."""
 
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from rigdesign.results.check import Role
-from rigdesign.results.quantity import Quantity
-
-StressSource = Literal["finite-element influence numbers", "ISO 6336-3 form and stress correction factors"]
-FROM_INFLUENCE: StressSource = "finite-element influence numbers"
-FROM_FACTORS: StressSource = "ISO 6336-3 form and stress correction factors"
-"""Where the root stress per tooth force comes from."""
+from rigdesign.results.loads import (
+    ContactLoss,
+    MeshResonance,
+    PressFitCapacity,
+    RootStressRatio,
+    SplineStress,
+    StageLoad,
+    UnsolvedSpeed,
+)
+from rigdesign.results.quantity import Quantity, Records
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,23 +83,20 @@ class GearboxDynamics:
     dynamic_factor: list[DynamicFactorPoint]
     dynamic_factor_at: dict[str, list[DynamicFactorPoint]]
     """The same at the other torques at which the schedule holds or changes the speed (``90 Nm``)."""
-    stage_loads: list[dict[str, Any]]
-    """Time run, per stage that turns under torque: {stage, dynamic_factor, speed_rpm, mean_Nm, peak_Nm, least_Nm,
-    least_share, least_share_at_rpm, least_share_mean_Nm}."""
+    stage_loads: Records[StageLoad]
+    """Of the time run, for every stage that turns under torque."""
     dynamic_torque_peak_Nm: float  # noqa: N815
     """Highest of the time run and the periodic responses of the held stages."""
     iso_factors: dict[str, float | str]
     """Every factor of ISO 6336-1 method B at the test speed, by its printed symbol."""
-    lift_off: list[dict[str, Any]]
-    """{stage, start_s, end_s, share} intervals without tooth contact."""
-    resonances: list[dict[str, Any]]
-    """{torque, mode, frequency_Hz, harmonic, speed_rpm, dynamic_factor, force_share, amplification, at_end,
-    dangerous}; at_end: the torque still rises at the highest speed computed."""
-    unsolved: list[dict[str, Any]]
-    """{curve, speed_rpm, reason}: speeds at which a curve has no point because no periodic response was found."""
+    lift_off: Records[ContactLoss]
+    """Of the time run."""
+    resonances: Records[MeshResonance]
+    """Of all curves."""
+    unsolved: Records[UnsolvedSpeed]
     root_stress: list[RootStressHistory]
-    root_stress_factor: list[dict[str, float]]
-    """{speed_rpm, pinion, wheel}: max sigma_F dynamic / quasi-static, to compare with K_V(n)."""
+    root_stress_factor: Records[RootStressRatio]
+    """Over the speeds of ``dynamic_factor``, to compare with K_V(n)."""
     geometry: dict[str, float | str]
     """Gear data, as drawn and warm, for the report."""
     flank_ratings: list[dict[str, Any]] = field(default_factory=list)
@@ -188,11 +189,8 @@ class DynamicsResult:
     pair_shares: list[dict[str, Any]] = field(default_factory=list)
     """Load on a tooth pair at the held stages: {gearbox, stage, rolling_angle_deg (of the pinion), share (of the mesh
     force at that moment, in motion), share_quasi_static, force_over_mean}."""
-    press_fits: list[dict[str, Any]] = field(default_factory=list)
-    """Of every gear with an interference at every torque that its check counts, of held stages, time run and events:
-    {gear, where, stage (whose temperatures count), interference_um, interference_hot_um, gear_degC, shaft_degC,
-    pressure_at_rest_MPa, pressure_MPa, friction, slip_torque_Nm, peak_torque_Nm, safety (None
-    without torque)}."""
-    splines: list[dict[str, Any]] = field(default_factory=list)
+    press_fits: Records[PressFitCapacity] = field(default_factory=Records)
+    """Of every gear with an interference at every torque that its check counts, of held stages, time run and events."""
+    splines: Records[SplineStress] = field(default_factory=Records)
     """Of every gear whose spline states its toothing at every torque that its checks count, each stress with an
-    allowable one: {gear, where, kind, torque_Nm, stress_MPa, allowable_MPa, safety}."""
+    allowable one."""

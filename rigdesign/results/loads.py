@@ -8,9 +8,8 @@ from typing import Annotated, Literal, Protocol
 from dynamics.rotor.bracing import BracingDrift
 from dynamics.rotor.torsional_modes import DampingRecord, LoopMode
 from rigdesign.results.check import Role
-from rigdesign.results.dynamics import FROM_FACTORS, StressSource
-from rigdesign.results.quantity import NewtonMetres, Quantity, Revolutions, Seconds
-from rigdesign.results.teeth import ToothHistory
+from rigdesign.results.quantity import Degrees, Megapascals, NewtonMetres, Quantity, Revolutions, Seconds
+from rigdesign.results.teeth import FROM_FACTORS, StressSource, ToothHistory
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,20 +19,18 @@ class StageLoad:
     stage: str
     dynamic_factor: float
     """Highest torque over the mean of its window."""
-    speed: float
-    """Where the dynamic factor occurs [rad/s]."""
-    mean: float
-    """Mean torque there [N m]."""
-    peak: float
-    """Highest torque of the stage [N m]."""
-    least: float
-    """Lowest torque of the stage [N m]."""
+    speed: Revolutions
+    """Where the dynamic factor occurs."""
+    mean: NewtonMetres
+    """Mean torque there."""
+    peak: NewtonMetres
+    """Highest torque of the stage."""
+    least: NewtonMetres
+    """Lowest torque of the stage."""
     least_share: float
     """Lowest torque over the mean of its window; below zero where the other flank is hit."""
-    least_share_speed: float
-    """[rad/s]"""
-    least_share_mean: float
-    """[N m]"""
+    least_share_speed: Annotated[float, Quantity("rpm", "least share at")]
+    least_share_mean: NewtonMetres
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,14 +38,11 @@ class ContactLoss:
     """An interval of the time run in which a mesh kept losing contact."""
 
     stage: str
-    start: float
-    """[s]"""
-    end: float
-    """[s]"""
+    start: Seconds
+    end: Seconds
     share: float
     """Of the time without contact."""
-    longest_gap: float
-    """[s]"""
+    longest_gap: Annotated[float, Quantity("ms")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,11 +52,9 @@ class MeshResonance:
     torque: str
     """Torque of the curve where the case counts it, in words: ``180 Nm``."""
     mode: str
-    frequency: float
-    """[Hz]"""
+    frequency: Annotated[float, Quantity("Hz")]
     harmonic: int
-    speed: float
-    """[rad/s]"""
+    speed: Revolutions
     dynamic_factor: float
     force_share: float
     amplification: float
@@ -96,8 +88,7 @@ class UnsolvedSpeed:
     """A speed at which a curve has no point because no periodic response was found."""
 
     curve: str
-    speed: float
-    """[rad/s]"""
+    speed: Revolutions
     reason: str
 
 
@@ -121,8 +112,7 @@ class RootStressPath:
 class RootStressRatio:
     """Highest dynamic over highest quasi-static root stress at one speed."""
 
-    speed: float
-    """[rad/s]"""
+    speed: Revolutions
     pinion: float
     wheel: float
 
@@ -214,27 +204,21 @@ class PressFitCapacity:
     """Held stage whose temperatures count."""
     where: str
     """Stage or event of the torque, in words."""
-    interference: float
-    """Effective and least, on the diameter, at rest and 20 degC [m]."""
-    interference_hot: float
-    """[m]"""
-    gear_temperature: float
-    """[K]"""
-    shaft_temperature: float
-    """[K]"""
-    pressure_at_rest: float
-    """[Pa]"""
-    pressure: float
-    """Hot and at speed [Pa]; 0 where the seat is loose."""
+    interference: Annotated[float, Quantity("um")]
+    """Effective and least, on the diameter, at rest and 20 degC."""
+    interference_hot: Annotated[float, Quantity("um")]
+    gear_temperature: Degrees
+    shaft_temperature: Degrees
+    pressure_at_rest: Megapascals
+    pressure: Megapascals
+    """Hot and at speed; 0 where the seat is loose."""
     friction: float
-    slip_torque: float
-    """[N m]"""
-    peak_torque: float
-    """[N m]"""
+    slip_torque: NewtonMetres
+    peak_torque: NewtonMetres
 
     @property
-    def safety(self) -> float | None:
-        """Slip torque over peak torque [-]; None without torque."""
+    def safety(self) -> Annotated[float | None, Quantity()]:
+        """Slip torque over peak torque; None without torque."""
         return self.slip_torque / self.peak_torque if self.peak_torque > 0.0 else None
 
 
@@ -247,16 +231,14 @@ class SplineStress:
     kind: SplineStressKind
     where: str
     """Stage or event of the torque, in words."""
-    torque: float
-    """[N m]"""
-    stress: float
-    """[Pa]"""
-    allowable: float
-    """As the case states it [Pa]."""
+    torque: NewtonMetres
+    stress: Megapascals
+    allowable: Megapascals
+    """As the case states it."""
 
     @property
-    def safety(self) -> float | None:
-        """Allowable over stress [-]; None without stress."""
+    def safety(self) -> Annotated[float | None, Quantity()]:
+        """Allowable over stress; None without stress."""
         return self.allowable / self.stress if self.stress > 0.0 else None
 
 

@@ -68,6 +68,7 @@ UNITS = {
         NEWTON_METRE,
         NUMBER,
         *map(DisplayUnit, ("W", "N", "Hz", "s", "h", "m2", "N/mm")),
+        DisplayUnit("ms", 1e3),
         DisplayUnit("N/um", 1e-6),
         DisplayUnit("kN m/rad", 1e-3),
         DisplayUnit("m3/h", HOUR),

@@ -15,6 +15,7 @@ from rigdesign.results.dynamics import (
     RootStressHistory,
 )
 from rigdesign.results.housing import CoolingBalance
+from rigdesign.results.loads import ContactLoss, MeshResonance, RootStressRatio, StageLoad, UnsolvedSpeed
 from rigdesign.results.result import (
     CouplingHistory,
     Finding,
@@ -30,6 +31,7 @@ from rigdesign.results.thermal import (
     TemperatureField,
     ThermalResult,
 )
+from rigdesign.results.units import RPM
 from thermal.fe.mesh import NamedMesh
 
 KUHN = [(0, 1, 3, 7), (0, 1, 5, 7), (0, 2, 3, 7), (0, 2, 6, 7), (0, 4, 5, 7), (0, 4, 6, 7)]
@@ -227,25 +229,26 @@ def gearbox(role, excitation, resonances):
         dynamic_factor=curve(1.0),
         dynamic_factor_at={"90 Nm": curve(1.2)},
         stage_loads=[
-            {
-                "stage": "run_up",
-                "dynamic_factor": 1.4,
-                "speed_rpm": 1796.0,
-                "mean_Nm": 90.0,
-                "peak_Nm": 126.0,
-                "least_Nm": 54.0,
-                "least_share": 0.6,
-                "least_share_at_rpm": 1796.0,
-            }
+            StageLoad(
+                stage="run_up",
+                dynamic_factor=1.4,
+                speed=1796.0 / RPM,
+                mean=90.0,
+                peak=126.0,
+                least=54.0,
+                least_share=0.6,
+                least_share_speed=1796.0 / RPM,
+                least_share_mean=90.0,
+            )
         ],
         dynamic_torque_peak_Nm=331.0,
         iso_factors={"K_V": 0.872, "N": 4.06, "c_gamma_alpha": 13.9, "range": "supercritical"},
-        lift_off=[{"stage": "run_up", "start_s": 2.31, "end_s": 2.42, "share": 0.02}],
+        lift_off=[ContactLoss(stage="run_up", start=2.31, end=2.42, share=0.02, longest_gap=1e-3)],
         resonances=resonances,
-        unsolved=[{"curve": "90 Nm", "speed_rpm": 1800.0, "reason": "not settled"}],
+        unsolved=[UnsolvedSpeed(curve="90 Nm", speed=1800.0 / RPM, reason="not settled")],
         root_stress=histories if role == "specimen" else [],
         root_stress_factor=[
-            {"speed_rpm": float(n), "pinion": float(k * 0.97), "wheel": float(k * 0.95)}
+            RootStressRatio(speed=float(n) / RPM, pinion=float(k * 0.97), wheel=float(k * 0.95))
             for n, k in zip(speed[::4], kv[::4])
         ],
         geometry={
@@ -287,24 +290,30 @@ def ramp():
 
 def dynamics():
     resonances = [
-        {
-            "torque": "180 Nm",
-            "mode": "pinion against wheel, test",
-            "frequency_Hz": 4022.7,
-            "harmonic": 2,
-            "speed_rpm": 1219.0,
-            "amplification": 2.6,
-            "dangerous": True,
-        },
-        {
-            "torque": "180 Nm",
-            "mode": "wheel shaft, test",
-            "frequency_Hz": 5926.7,
-            "harmonic": 2,
-            "speed_rpm": 1796.0,
-            "amplification": 1.2,
-            "dangerous": False,
-        },
+        MeshResonance(
+            torque="180 Nm",
+            mode="pinion against wheel, test",
+            frequency=4022.7,
+            harmonic=2,
+            speed=1219.0 / RPM,
+            dynamic_factor=1.2,
+            force_share=0.2,
+            amplification=2.6,
+            at_end=False,
+            dangerous=True,
+        ),
+        MeshResonance(
+            torque="180 Nm",
+            mode="wheel shaft, test",
+            frequency=5926.7,
+            harmonic=2,
+            speed=1796.0 / RPM,
+            dynamic_factor=1.3,
+            force_share=0.3,
+            amplification=1.2,
+            at_end=False,
+            dangerous=False,
+        ),
     ]
     return DynamicsResult(
         gearboxes={"test": gearbox("specimen", 0.5, resonances), "reference": gearbox("rig", 0.1, [])},

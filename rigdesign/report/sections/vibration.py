@@ -1,7 +1,8 @@
 """Vibration of the power circuit: modes over speed, dynamic torque, and at which speeds the rig may dwell."""
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from rigdesign.report.sections.section import Draw, ReportSection, Values, gearbox_styles
 from rigdesign.results.result import RunResult
@@ -163,12 +164,23 @@ def _run_torques(rows: list[dict[str, Any]]) -> list[tuple[dict[str, Any], dict[
     ]
 
 
-def least_safe(rows: list[dict[str, Any]], *keys: str) -> list[dict[str, Any]]:
-    """Of the rows that agree in some keys that with the least safety; a row without torque is the safest."""
-    found: dict[tuple[Any, ...], dict[str, Any]] = {}
-    for row in sorted(rows, key=lambda row: math.inf if row["safety"] is None else float(row["safety"])):
-        found.setdefault(tuple(row[key] for key in keys), row)
-    return sorted(found.values(), key=rows.index)
+class Rated(Protocol):
+    """A record with a safety."""
+
+    @property
+    def safety(self) -> float | None:
+        """None without torque or stress."""
+
+
+R = TypeVar("R", bound=Rated)
+
+
+def least_safe(records: Sequence[R], *names: str) -> list[R]:
+    """Of the records that agree in some values that with the least safety; one without torque is the safest."""
+    found: dict[tuple[object, ...], R] = {}
+    for record in sorted(records, key=lambda record: math.inf if record.safety is None else record.safety):
+        found.setdefault(tuple(getattr(record, name) for name in names), record)
+    return sorted(found.values(), key=records.index)
 
 
 def _turns(result: RunResult) -> bool:

@@ -7,64 +7,8 @@ from dynamics.gear.pair import GearPair
 from dynamics.rotor.torsional_modes import DampingRecord, LoopMode
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.results.dynamics import RootStressHistory
-from rigdesign.results.loads import (
-    ContactLoss,
-    MeshResonance,
-    ModeCrossing,
-    RootStressPath,
-    RootStressRatio,
-    StageBracing,
-    StageLoad,
-    UnsolvedSpeed,
-)
+from rigdesign.results.loads import ModeCrossing, RootStressPath, StageBracing
 from rigdesign.results.units import MM, MPA, RPM
-
-
-def stage_load_row(load: StageLoad) -> dict[str, Any]:
-    """Load of one mesh in one stage."""
-    return {
-        "stage": load.stage,
-        "dynamic_factor": load.dynamic_factor,
-        "speed_rpm": load.speed * RPM,
-        "mean_Nm": load.mean,
-        "peak_Nm": load.peak,
-        "least_Nm": load.least,
-        "least_share": load.least_share,
-        "least_share_at_rpm": load.least_share_speed * RPM,
-        "least_share_mean_Nm": load.least_share_mean,
-    }
-
-
-def contact_loss_row(loss: ContactLoss) -> dict[str, Any]:
-    """An interval in which a mesh kept losing contact."""
-    return {
-        "stage": loss.stage,
-        "start_s": loss.start,
-        "end_s": loss.end,
-        "share": loss.share,
-        "longest_gap_ms": 1e3 * loss.longest_gap,
-    }
-
-
-def resonance_row(resonance: MeshResonance) -> dict[str, Any]:
-    """A resonance of one mesh."""
-    return {
-        "torque": resonance.torque,
-        "mode": resonance.mode,
-        "frequency_Hz": resonance.frequency,
-        "harmonic": resonance.harmonic,
-        "speed_rpm": resonance.speed * RPM,
-        "dynamic_factor": resonance.dynamic_factor,
-        "force_share": resonance.force_share,
-        "amplification": resonance.amplification,
-        "at_end": resonance.at_end,
-        "dangerous": resonance.dangerous,
-    }
-
-
-def unsolved_row(unsolved: UnsolvedSpeed) -> dict[str, Any]:
-    """A speed without a periodic response."""
-    return {"curve": unsolved.curve, "speed_rpm": unsolved.speed * RPM, "reason": unsolved.reason}
 
 
 def root_stress_row(path: RootStressPath) -> RootStressHistory:
@@ -77,11 +21,6 @@ def root_stress_row(path: RootStressPath) -> RootStressHistory:
         quasi_static_MPa=[stress * MPA for stress in path.quasi_static],
         source=path.source,
     )
-
-
-def root_ratio_row(ratio: RootStressRatio) -> dict[str, float]:
-    """Dynamic over quasi-static root stress at one speed."""
-    return {"speed_rpm": ratio.speed * RPM, "pinion": ratio.pinion, "wheel": ratio.wheel}
 
 
 def mode_row(number: int, mode: LoopMode) -> dict[str, Any]:
