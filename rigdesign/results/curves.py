@@ -9,9 +9,21 @@ from rigdesign.results.lateral import LateralVibration
 from rigdesign.results.loads import EventRecord
 from rigdesign.results.quantity import value_in_unit
 from rigdesign.results.thermal import ExpansionResult, OilPowerCurve, TransientCurve, TransientResult
+from rigdesign.results.vibration import Waterfall
 
 Columns = dict[str, list[Any]]
 """Values of one length by ``quantity [unit]``."""
+SHARES = {
+    "rolling angle of the pinion [deg]": "angle",
+    "share [1]": "share",
+    "share quasi-static [1]": "static_share",
+    "force over mean [1]": "force",
+}
+LINE_LOADS = {
+    "position from mid-face [mm]": "face",
+    "line load [N/mm]": "line_load",
+    "line load quasi-static [N/mm]": "static_line_load",
+}
 
 
 def curves_of(
@@ -86,32 +98,17 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
     if dynamics.campbell is not None:
         yield "campbell", _campbell(dynamics.campbell)
     for spectrum in dynamics.spectra:
-        if spectrum["order"]:
+        if spectrum.order:
             yield (
-                file_stem("spectrum", spectrum["gearbox"], spectrum["stage"]),
-                {"order of the pinion [1]": spectrum["order"], "amplitude [Nm]": spectrum["amplitude_Nm"]},
+                file_stem("spectrum", spectrum.mesh, spectrum.stage),
+                _of(spectrum, {"order of the pinion [1]": "order", "amplitude [Nm]": "amplitude"}),
             )
     for shared in dynamics.pair_shares:
-        yield (
-            file_stem("pair_share", shared["gearbox"], shared["stage"]),
-            {
-                "rolling angle of the pinion [deg]": shared["rolling_angle_deg"],
-                "share [1]": shared["share"],
-                "share quasi-static [1]": shared["share_quasi_static"],
-                "force over mean [1]": shared["force_over_mean"],
-            },
-        )
-        if shared["face_mm"]:
-            yield (
-                file_stem("line_load", shared["gearbox"], shared["stage"]),
-                {
-                    "position from mid-face [mm]": shared["face_mm"],
-                    "line load [N/mm]": shared["line_load_N_mm"],
-                    "line load quasi-static [N/mm]": shared["line_load_quasi_static_N_mm"],
-                },
-            )
+        yield file_stem("pair_share", shared.mesh, shared.stage), _of(shared, SHARES)
+        if shared.face:
+            yield file_stem("line_load", shared.mesh, shared.stage), _of(shared, LINE_LOADS)
     for waterfall in dynamics.waterfalls:
-        yield file_stem("waterfall", waterfall["gearbox"], waterfall["stage"]), _waterfall(waterfall)
+        yield file_stem("waterfall", waterfall.mesh, waterfall.stage), _waterfall(waterfall)
     if dynamics.dynamic_root is not None and dynamics.dynamic_root["curves"]:
         yield "dynamic_root_stress", _dynamic_root(dynamics.dynamic_root["curves"])
     if dynamics.section_torques is not None:
@@ -175,10 +172,16 @@ def _campbell(campbell: Mapping[str, Any]) -> Columns:
     return columns
 
 
-def _waterfall(waterfall: Mapping[str, Any]) -> Columns:
+def _of(record: object, names: Mapping[str, str]) -> Columns:
+    """Columns of a record whose values are lists: name by header."""
+    return {header: list(value_in_unit(record, name)) for header, name in names.items()}
+
+
+def _waterfall(waterfall: Waterfall) -> Columns:
     """A column for every frequency, a row for every speed."""
-    columns: Columns = {"pinion speed [rpm]": list(waterfall["pinion_speed_rpm"])}
-    for frequency, values in zip(waterfall["frequency_Hz"], zip(*waterfall["amplitude_Nm"]), strict=True):
+    columns = _of(waterfall, {"pinion speed [rpm]": "speed"})
+    amplitudes = zip(*value_in_unit(waterfall, "amplitude"), strict=True)
+    for frequency, values in zip(waterfall.frequency, amplitudes, strict=True):
         columns[f"amplitude at {frequency:.1f} Hz [Nm]"] = list(values)
     return columns
 

@@ -6,14 +6,21 @@ from typing import Annotated, Any
 from rigdesign.results.check import Role
 from rigdesign.results.loads import (
     ContactLoss,
+    HeldBracing,
+    JointDamping,
+    ListedMode,
     MeshResonance,
+    ModeCrossing,
     PressFitCapacity,
     RootStressRatio,
     SplineStress,
     StageLoad,
+    TorqueBalance,
     UnsolvedSpeed,
 )
 from rigdesign.results.quantity import Quantity, Records
+from rigdesign.results.teeth import PairShare
+from rigdesign.results.vibration import HeldSpectrum, Waterfall
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,24 +146,18 @@ class DynamicsResult:
 
     gearboxes: dict[str, GearboxDynamics]
     """By gearbox; by ``gearbox.mesh`` where a gearbox has several meshes."""
-    natural_frequencies: list[dict[str, Any]]
-    """{mode, frequency_Hz, damping_ratio, shape, largest_at}: modes of the closed loop, meshes at their mean
-    stiffness; shape: parts that hold the strain energy; largest_at: shaft and place that oscillate most; mode 0 is
-    rigid rotation."""
-    damping_audit: list[dict[str, Any]]
-    """{joint, damping_ratio, corner_frequency_Hz, warning}."""
+    natural_frequencies: Records[ListedMode]
+    damping_audit: Records[JointDamping]
     sampling: dict[str, float]
-    bracing: list[dict[str, Any]]
-    """Per stage: {stage, mode, torque_Nm, twist_deg, axial_shift_mm, half_gear_rotation_deg,
-    actuator_force_N, torque_cold_Nm, torque_hot_Nm}."""
+    bracing: Records[HeldBracing]
+    """Of every held stage."""
     ramp: RampHistory | None
-    torque_balance: list[dict[str, Any]]
+    torque_balance: Records[TorqueBalance]
+    """Of every held stage."""
     tooth_histories: list[ToothTurnHistory] = field(default_factory=list)
     """Of every loaded gear at the held stage that speaks for the rig."""
-    loop_crossings: list[dict[str, Any]] = field(default_factory=list)
-    """{kind, order_of, mode, shape, frequency_Hz, damping_ratio, harmonic, speed_rpm, gain}: mesh orders that meet
-    a mode of the closed loop which the mesh excites, and shaft orders that meet one; order_of: gearbox or shaft,
-    speed_rpm that of its pinion or its own."""
+    loop_crossings: Records[ModeCrossing] = field(default_factory=Records)
+    """Mesh orders that meet a mode of the closed loop which the mesh excites, and shaft orders that meet one."""
     campbell: dict[str, Any] | None = None
     """Modes of the closed loop over speed, bearings as they run there: {speed_rpm (of the first pinion), modes:
     [{mode, shape, driven_by, frequency_Hz, damping_ratio, gain: {gearbox}}], orders: [{kind, of, harmonic,
@@ -180,15 +181,12 @@ class DynamicsResult:
     high_rpm, bands: [{low_rpm, high_rpm, resonances: [{kind, where, speed_rpm, share, low_rpm, high_rpm}]}],
     safe: [{low_rpm, high_rpm}], stages: [{stage, kind, speed_rpm, computed, band, nearest_safe_rpm}], ramp: [{step,
     action, speed_rpm, torque_Nm, reason}], highest: {speed_rpm, kind: share over speed}}."""
-    waterfalls: list[dict[str, Any]] = field(default_factory=list)
-    """Spectrum of the mesh torque over the run-up, from the time run: {gearbox, stage, pinion_speed_rpm,
-    frequency_Hz, amplitude_Nm: rows over speed of columns over frequency, teeth}; empty where no torque is kept."""
-    spectra: list[dict[str, Any]] = field(default_factory=list)
-    """At the held stages: {gearbox, stage, pinion_speed_rpm, mean_Nm, teeth, order, amplitude_Nm: of the time run
-    over the order of the pinion; mesh_harmonic_order, mesh_harmonic_amplitude_Nm: of the periodic response}."""
-    pair_shares: list[dict[str, Any]] = field(default_factory=list)
-    """Load on a tooth pair at the held stages: {gearbox, stage, rolling_angle_deg (of the pinion), share (of the mesh
-    force at that moment, in motion), share_quasi_static, force_over_mean}."""
+    waterfalls: Records[Waterfall] = field(default_factory=Records)
+    """Spectrum of the mesh torque over run-up and run-down, from the time run; empty where no torque is kept."""
+    spectra: Records[HeldSpectrum] = field(default_factory=Records)
+    """At the held stages."""
+    pair_shares: Records[PairShare] = field(default_factory=Records)
+    """Load on a tooth pair at the held stages."""
     press_fits: Records[PressFitCapacity] = field(default_factory=Records)
     """Of every gear with an interference at every torque that its check counts, of held stages, time run and events."""
     splines: Records[SplineStress] = field(default_factory=Records)

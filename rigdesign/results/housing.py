@@ -18,6 +18,15 @@ SINKS: tuple[Sink, ...] = ("room", "oil", "water", "stored", "no_heat")
 Power = Annotated[float | None, Quantity("W")]
 
 
+ROUND_OFF = 1e-8
+"""Share of a heat below which a balance is closed: numbers of results.json have ten digits."""
+
+
+def _left_open(difference: float, whole: float) -> float:
+    """Difference of two sums [W]; 0 where it is round-off."""
+    return 0.0 if abs(difference) < ROUND_OFF * abs(whole) else difference
+
+
 @dataclass(frozen=True, kw_only=True)
 class HeatSource:
     """Power that becomes heat in one part of the rig, and where it goes; a negative one is taken from there."""
@@ -74,7 +83,7 @@ class RigHeat:
     @property
     def imbalance(self) -> Watts:
         """Power that goes in less heat of all sinks."""
-        return self.input_power - math.fsum(self.into(sink) for sink in SINKS)
+        return _left_open(self.input_power - math.fsum(self.into(sink) for sink in SINKS), self.input_power)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -218,13 +227,14 @@ class CoolingBalance:
         """Put in less taken out and stored."""
         given = self.losses + self.pump + self.heater + (self.circulation or 0.0) + (self.machines or 0.0)
         given += self.volumes or 0.0
-        return (
+        return _left_open(
             given
             - self.cooler
             - self.room
             - (self.tanks or 0.0)
             - (self.stored or 0.0)
-            - (self.streams or 0.0)
+            - (self.streams or 0.0),
+            given,
         )
 
 

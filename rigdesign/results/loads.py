@@ -8,7 +8,17 @@ from typing import Annotated, Literal, Protocol
 from dynamics.rotor.bracing import BracingDrift
 from dynamics.rotor.torsional_modes import DampingRecord, LoopMode
 from rigdesign.results.check import Role
-from rigdesign.results.quantity import Degrees, Megapascals, NewtonMetres, Quantity, Revolutions, Seconds
+from rigdesign.results.quantity import (
+    Degrees,
+    Hertz,
+    Megapascals,
+    NewtonMetres,
+    Newtons,
+    Quantity,
+    Revolutions,
+    Seconds,
+    Watts,
+)
 from rigdesign.results.teeth import FROM_FACTORS, StressSource, ToothHistory
 
 
@@ -52,7 +62,7 @@ class MeshResonance:
     torque: str
     """Torque of the curve where the case counts it, in words: ``180 Nm``."""
     mode: str
-    frequency: Annotated[float, Quantity("Hz")]
+    frequency: Hertz
     harmonic: int
     speed: Revolutions
     dynamic_factor: float
@@ -74,13 +84,71 @@ class ModeCrossing:
     """Label of the mesh, or shaft."""
     mode: int
     shape: str
-    frequency: float
-    """[Hz]"""
+    frequency: Hertz
     damping_ratio: float
     harmonic: int
-    speed: float
-    """Of the pinion of the mesh, or of the shaft [rad/s]."""
+    speed: Revolutions
+    """Of the pinion of the mesh, or of the shaft."""
     gain: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class ListedMode:
+    """A mode of the closed loop, meshes at their mean stiffness."""
+
+    mode: int
+    """1 for the lowest that oscillates, 0 for rigid rotation."""
+    frequency: Hertz
+    damping_ratio: float
+    shape: str
+    """Parts that hold the strain energy."""
+    largest_at: str
+    """Shaft and place that oscillate most."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointDamping:
+    """Damping of one joint or mesh."""
+
+    joint: str
+    kind: str
+    damping_ratio: float
+    corner_frequency: Annotated[float | None, Quantity("Hz")]
+    """None without damping."""
+    own_frequency: Hertz
+    warning: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldBracing:
+    """The bracing of one held stage, warm and as drawn."""
+
+    stage: str
+    mode: str
+    torque: NewtonMetres
+    twist: Annotated[float, Quantity("deg")]
+    axial_shift: Annotated[float, Quantity("mm")]
+    half_gear_rotation: Annotated[float, Quantity("deg")]
+    actuator_force: Newtons
+    spline_friction: Newtons
+    loop_stiffness: Annotated[float, Quantity("kN m/rad")]
+    torque_as_drawn: NewtonMetres
+    axial_shift_as_drawn: Annotated[float, Quantity("mm")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueBalance:
+    """Power of the drive against the losses of one held stage."""
+
+    stage: str
+    drive_torque: NewtonMetres
+    drive_power: Watts
+    losses: Watts
+
+    @property
+    def joints(self) -> Watts:
+        """What joints damp: the rest."""
+        return self.drive_power - self.losses
 
 
 @dataclass(frozen=True, kw_only=True)

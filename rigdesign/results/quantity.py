@@ -84,13 +84,14 @@ def _converted(value: Any, convert: Any) -> Any:
 NONE = Quantity()
 
 Degrees = Annotated[float, Quantity("degC")]
+Hertz = Annotated[float, Quantity("Hz")]
 Megapascals = Annotated[float, Quantity("MPa")]
 NewtonMetres = Annotated[float, Quantity("N m")]
 Newtons = Annotated[float, Quantity("N")]
 Revolutions = Annotated[float, Quantity("rpm")]
 Seconds = Annotated[float, Quantity("s")]
 Watts = Annotated[float, Quantity("W")]
-"""The commonest, in K, Pa, N m, N, rad/s, s and W as fields hold them."""
+"""The commonest, in K, Hz, Pa, N m, N, rad/s, s and W as fields hold them."""
 
 
 _OF_SOLVERS: dict[type, Mapping[str, Quantity]] = {}

@@ -15,7 +15,18 @@ from rigdesign.results.dynamics import (
     RootStressHistory,
 )
 from rigdesign.results.housing import CoolingBalance
-from rigdesign.results.loads import ContactLoss, MeshResonance, RootStressRatio, StageLoad, UnsolvedSpeed
+from rigdesign.results.loads import (
+    ContactLoss,
+    HeldBracing,
+    JointDamping,
+    ListedMode,
+    MeshResonance,
+    RootStressRatio,
+    StageLoad,
+    TorqueBalance,
+    UnsolvedSpeed,
+)
+from rigdesign.results.quantity import Records
 from rigdesign.results.result import (
     CouplingHistory,
     Finding,
@@ -317,34 +328,51 @@ def dynamics():
     ]
     return DynamicsResult(
         gearboxes={"test": gearbox("specimen", 0.5, resonances), "reference": gearbox("rig", 0.1, [])},
-        natural_frequencies=[
-            {"frequency_Hz": 412.0, "damping_ratio": 0.04, "shape": "test against reference gearbox"}
-        ],
-        damping_audit=[
-            {
-                "joint": "test pinion spline",
-                "damping_ratio": 0.34,
-                "corner_frequency_Hz": 2100.0,
-                "warning": "damping_ratio 0.34 above 0.3; check the damper",
-            }
-        ],
+        natural_frequencies=Records(
+            [
+                ListedMode(
+                    mode=1,
+                    frequency=412.0,
+                    damping_ratio=0.04,
+                    shape="test against reference gearbox",
+                    largest_at="test_pinion",
+                )
+            ]
+        ),
+        damping_audit=Records(
+            [
+                JointDamping(
+                    joint="test pinion spline",
+                    kind="spline",
+                    damping_ratio=0.34,
+                    corner_frequency=2100.0,
+                    own_frequency=400.0,
+                    warning="damping_ratio 0.34 above 0.3; check the damper",
+                )
+            ]
+        ),
         sampling={"samples_per_mesh": 2.02, "internal_steps": 8},
-        bracing=[
-            {
-                "stage": "dwell",
-                "torque": "180 Nm",
-                "mode": "torque_controlled",
-                "torque_Nm": 180.0,
-                "twist_deg": 1.31,
-                "axial_shift_mm": 3.9,
-                "half_gear_rotation_deg": 0.66,
-                "actuator_force_N": 1240.0,
-                "torque_cold_Nm": 180.0,
-                "torque_hot_Nm": 180.0,
-            }
-        ],
+        bracing=Records(
+            [
+                HeldBracing(
+                    stage="dwell",
+                    mode="torque_controlled",
+                    torque=180.0,
+                    twist=0.0229,
+                    axial_shift=3.9e-3,
+                    half_gear_rotation=0.0115,
+                    actuator_force=1240.0,
+                    spline_friction=0.0,
+                    loop_stiffness=1e4,
+                    torque_as_drawn=180.0,
+                    axial_shift_as_drawn=3.9e-3,
+                )
+            ]
+        ),
         ramp=ramp(),
-        torque_balance=[{"stage": "dwell", "drive_torque_Nm": 9.1, "losses_Nm": 9.08}],
+        torque_balance=Records(
+            [TorqueBalance(stage="dwell", drive_torque=9.1, drive_power=11435.0, losses=11410.0)]
+        ),
     )
 
 

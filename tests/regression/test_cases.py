@@ -159,7 +159,7 @@ def test_motor_power_is_the_sum_of_all_losses() -> None:
     """Bearings, windage, oil, seals, squeezing, tooth friction and damping; joints take next to nothing."""
     assert prototype().dynamics is not None
     for row in prototype().dynamics.torque_balance:
-        assert row["losses_W"] == pytest.approx(row["drive_power_W"], rel=1e-3)
+        assert row.losses == pytest.approx(row.drive_power, rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -81,26 +81,21 @@ def _in_motion(result: RunResult, draw: Draw) -> Values:
     dynamics = result.dynamics
     assert dynamics is not None
     styles = gearbox_styles(result)
-    stages = dict.fromkeys(row["stage"] for row in dynamics.waterfalls)
-    figures = {
-        "spectrum_figure": (
-            spectrum_figure,
-            dynamics.spectra,
-            "Spectrum of the mesh torque at the held stages",
-        ),
-        "share_figure": (
-            pair_share_figure,
-            dynamics.pair_shares,
-            "Share of a tooth pair over the rolling angle",
-        ),
-    }
-    shown: Values = {
-        name: draw(figure(rows, styles), text) if rows else None
-        for name, (figure, rows, text) in figures.items()
-    }
+    stages = dict.fromkeys(waterfall.stage for waterfall in dynamics.waterfalls)
+    shown: Values = {"spectrum_figure": None, "share_figure": None}
+    if dynamics.spectra:
+        shown["spectrum_figure"] = draw(
+            spectrum_figure(dynamics.spectra, styles), "Spectrum of the mesh torque at the held stages"
+        )
+    if dynamics.pair_shares:
+        shown["share_figure"] = draw(
+            pair_share_figure(dynamics.pair_shares, styles), "Share of a tooth pair over the rolling angle"
+        )
     shown["waterfall_figures"] = {
         stage: draw(
-            waterfall_figure([row for row in dynamics.waterfalls if row["stage"] == stage], styles),
+            waterfall_figure(
+                [waterfall for waterfall in dynamics.waterfalls if waterfall.stage == stage], styles
+            ),
             f"Spectrum of the mesh torque over speed in stage {stage}",
         )
         for stage in stages

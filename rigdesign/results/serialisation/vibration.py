@@ -1,4 +1,4 @@
-"""Modes, torques, spectra and speeds to avoid as rows of the result."""
+"""Modes, torques and speeds to avoid as rows of the result."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -10,17 +10,12 @@ from rigdesign.results.vibration import (
     CampbellRecord,
     DwellRecord,
     DwellStage,
-    HeldSpectrum,
     HeldTorque,
     RunTorque,
     SectionTorqueRecord,
     TorquePlace,
     TorqueSwing,
-    Waterfall,
 )
-
-DIGITS = 4
-"""Significant digits of the amplitudes of a waterfall: it is looked at, not computed with."""
 
 
 def campbell_row(record: CampbellRecord) -> dict[str, Any]:
@@ -118,33 +113,6 @@ def _columns(swings: Sequence[TorqueSwing]) -> dict[str, list[float]]:
         "mean_Nm": [swing.mean for swing in swings],
         "half_peak_to_peak_Nm": [swing.half_peak_to_peak for swing in swings],
         "peak_Nm": [swing.peak for swing in swings],
-    }
-
-
-def waterfall_row(found: Waterfall) -> dict[str, Any]:
-    """Amplitudes by speed and frequency."""
-    return {
-        "gearbox": found.mesh,
-        "stage": found.stage,
-        "pinion_speed_rpm": [speed * RPM for speed in found.speed],
-        "frequency_Hz": list(found.frequency),
-        "amplitude_Nm": [[float(f"{value:.{DIGITS}g}") for value in row] for row in found.amplitude],
-        "teeth": found.per_turn,
-    }
-
-
-def spectrum_row(found: HeldSpectrum) -> dict[str, Any]:
-    """Amplitudes over the order of the pinion."""
-    return {
-        "gearbox": found.mesh,
-        "stage": found.stage,
-        "pinion_speed_rpm": found.speed * RPM,
-        "mean_Nm": found.mean,
-        "teeth": found.teeth,
-        "order": list(found.order),
-        "amplitude_Nm": list(found.amplitude),
-        "mesh_harmonic_order": list(found.harmonic_order),
-        "mesh_harmonic_amplitude_Nm": list(found.harmonic_amplitude),
     }
 
 

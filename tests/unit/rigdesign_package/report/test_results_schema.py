@@ -9,7 +9,7 @@ import pytest
 
 from rigdesign.report import write_results
 from rigdesign.report.results_json import results_schema
-from rigdesign.results.quantity import Quantity
+from rigdesign.results.quantity import Quantity, Records
 from tests.builders.commands import Rigdesign
 from tests.builders.paths import CASES
 from tests.builders.report import make_result
@@ -79,3 +79,23 @@ def test_the_published_schema_is_that_of_the_classes(rigdesign: Rigdesign):
     assert json.loads(printed) == results_schema()
     assert (CASES / "results.schema.json").read_text(encoding="utf-8") == printed
     assert re.search(r'"schema_version": \{\s+"const": "3"', printed)
+
+
+def test_records_are_a_data_frame_in_their_units():
+    frame = Records(make_result().cooler).to_dataframe()
+    assert list(frame["flow_l_min"]) == [pytest.approx(26.0)]
+    assert {"losses_W", "imbalance_W"} <= set(frame.columns)
+
+
+def test_a_result_without_its_curves_is_refused_with_the_file_that_is_missing(rigdesign: Rigdesign, tmp_path):
+    write_results(make_result(), tmp_path)
+    (tmp_path / "curves" / "ramp.csv").unlink()
+    ended = rigdesign("report", tmp_path, "--html")
+    assert ended.status == 2 and "curves/ramp.csv: No such file" in ended.err
+    assert "keep its folder together" in ended.err
+
+
+def test_numbers_that_stand_in_a_file_of_curves_are_not_repeated(tmp_path):
+    write_results(make_result(), tmp_path)
+    ramp = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["dynamics"]["ramp"]
+    assert ramp["time_s"] == {"file": "curves/ramp.csv", "column": "time [s]"}
