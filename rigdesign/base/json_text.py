@@ -78,11 +78,12 @@ def csv_text(header: Row, rows: Iterable[Row]) -> str:
     """
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerows([_cell(value) for value in row] for row in (header, *rows))
+    writer.writerows([csv_cell(value) for value in row] for row in (header, *rows))
     return buffer.getvalue()
 
 
-def _cell(value: Any) -> Any:
+def csv_cell(value: Any) -> Any:
+    """A value as it stands in a cell: floats with ten significant digits, texts in one line and never a formula."""
     if isinstance(value, float):
         return f"{value:.{SIGNIFICANT_DIGITS}g}"
     if not isinstance(value, str):

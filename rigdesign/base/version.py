@@ -1,5 +1,5 @@
 """Version of the tool and of its results."""
 
 __version__ = "0.1.0"
-RESULTS_SCHEMA_VERSION = "2"
+RESULTS_SCHEMA_VERSION = "3"
 """Of results.json; another one cannot be read as this one."""

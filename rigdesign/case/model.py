@@ -21,7 +21,7 @@ from rigdesign.case.limits import Limits
 from rigdesign.case.losses import Losses
 from rigdesign.case.lubrication import OilCircuit, with_setpoints
 from rigdesign.case.paths import places
-from rigdesign.case.provenance import InputRow, Mark, input_rows, take_off
+from rigdesign.case.provenance import InputRow, Mark, MeasuredInput, input_rows, take_off
 from rigdesign.case.rig_heat import RigHeatInput
 from rigdesign.case.schedule import Numerics, ScheduleInput, TestPlan, Transient
 from rigdesign.case.substances import Ambient, CustomMaterial, CustomOil
@@ -172,10 +172,10 @@ class Case(Part):
         return self._origin.inputs
 
     @property
-    def overrides(self) -> tuple[dict[str, str], ...]:
-        """Inputs replaced by a measured value: path, value, measured (where from)."""
+    def overrides(self) -> tuple[MeasuredInput, ...]:
+        """Inputs replaced by a measured value."""
         return tuple(
-            {"path": mark.path, "value": mark.shown, "measured": mark.measured}
+            MeasuredInput(path=mark.path, value=mark.shown, measured=mark.measured)
             for mark in self._origin.marks
             if mark.measured is not None
         )

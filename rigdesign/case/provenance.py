@@ -161,6 +161,15 @@ LABELS = ("schema_version", "name", "title")
 
 
 @dataclass(frozen=True, kw_only=True)
+class MeasuredInput:
+    """An input that a measured value replaces; measured : where from."""
+
+    path: str
+    value: str
+    measured: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class InputRow:
     """One value of the resolved case.
 

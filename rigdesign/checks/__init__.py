@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
@@ -13,8 +13,7 @@ from rigdesign.checks.law_ranges import out_of_range
 from rigdesign.checks.omissions import omissions
 from rigdesign.checks.registry import REGISTRY, load_topics
 from rigdesign.checks.rules import joined, unjudged, with_doubt, with_error, with_omissions
-from rigdesign.results.check import Check
-from rigdesign.results.result import Finding
+from rigdesign.results.check import Check, Finding, HandCalculation
 
 if TYPE_CHECKING:
     from rigdesign.postprocessing.solved_rig import LawSpread, SolvedRig
@@ -25,10 +24,10 @@ __all__ = ["all_checks", "estimated_checks", "held_checks", "mesh_checks", "of_o
 load_topics(__name__, __path__)
 
 
-def all_checks(solved: SolvedRig, hand: Sequence[Mapping[str, Any]] = ()) -> list[Check]:
+def all_checks(solved: SolvedRig, hand: Sequence[HandCalculation] = ()) -> list[Check]:
     """Every check in the order of the report with its error, what makes it doubtful and the inputs it depends on.
 
-    hand : rows of `records.hand.hand_checks`
+    hand : calculations by hand of this rig
     """
     causes, case = list(_disagreeing(hand)), solved.case
     checks = (_with_doubts(case, check, causes) for check in estimated_checks(solved))
@@ -123,10 +122,10 @@ def mesh_checks(solved: SolvedRig) -> list[Check]:
     return [check for topic in topics for check in topic.checks(solved) if check.value is not None]
 
 
-def _disagreeing(rows: Sequence[Mapping[str, Any]]) -> Iterator[tuple[tuple[str, ...], str]]:
-    """(patterns of check ids, cause of doubt) of every row whose two numbers do not agree."""
-    for row in rows:
-        patterns = next((ids for start, ids in ENTERS.items() if row["quantity"].startswith(start)), ())
-        if patterns and abs(row["computed"] - row["by_hand"]) > DISAGREES * abs(row["by_hand"]):
-            numbers = f"{row['computed']:.3g} {row['unit']}, by hand {row['by_hand']:.3g} {row['unit']}"
-            yield patterns, f"{row['quantity']}: {numbers}"
+def _disagreeing(calculations: Sequence[HandCalculation]) -> Iterator[tuple[tuple[str, ...], str]]:
+    """(patterns of check ids, cause of doubt) of every one whose two numbers do not agree."""
+    for row in calculations:
+        patterns = next((ids for start, ids in ENTERS.items() if row.quantity.startswith(start)), ())
+        if patterns and abs(row.computed - row.by_hand) > DISAGREES * abs(row.by_hand):
+            numbers = f"{row.computed:.3g} {row.unit}, by hand {row.by_hand:.3g} {row.unit}"
+            yield patterns, f"{row.quantity}: {numbers}"

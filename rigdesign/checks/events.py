@@ -10,7 +10,7 @@ from rigdesign.case.events import EmergencyStop, EventLoadLimits, Overspeed, Too
 from rigdesign.case.model import Case
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
 from rigdesign.results.check import Check
-from rigdesign.results.loads import NOT_WITHIN, EventRecord, Quantity
+from rigdesign.results.loads import NOT_WITHIN, EventRecord, Load
 from rigdesign.results.units import NEWTON_METRE, NUMBER, RPM, DisplayUnit
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def _of(part: Part) -> Callable[[Case], Iterator[str]]:
     return lambda case: (name for name, event in case.events.items() if isinstance(event, part))
 
 
-def _peaks(quantity: Quantity) -> Callable[[EventRecord], Values]:
+def _peaks(quantity: Load) -> Callable[[EventRecord], Values]:
     """Within the time marched, and in a stop during run-down."""
 
     def values(record: EventRecord) -> Values:

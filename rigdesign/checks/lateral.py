@@ -49,18 +49,21 @@ def _orbits(solved: SolvedRig) -> Values:
 def _separations(solved: SolvedRig) -> Values:
     """Margin over the required one of every lateral mode that needs one."""
     for stage in _lateral(solved).of("held"):
-        if all(one.required == 0.0 or stage.as_rigid_body(one.mode) for one in stage.separations):
+        if all(
+            one.required == 0.0 or stage.as_rigid_body(stage.modes[one.mode]) for one in stage.separations
+        ):
             yield FAR, f"stage {stage.stage}: no lateral mode with AF >= {AF_CRITICAL:g} among those listed"
         for one in stage.separations:
-            if one.required > 0.0 and not stage.as_rigid_body(one.mode):
-                yield abs(one.margin) / one.required, f"stage {stage.stage}: {_words(one)}"
+            if one.required > 0.0 and not stage.as_rigid_body(stage.modes[one.mode]):
+                yield abs(one.margin) / one.required, f"stage {stage.stage}: {_words(stage, one)}"
 
 
-def _words(one: Separation) -> str:
+def _words(stage: StageLateral, one: Separation) -> str:
+    mode = stage.modes[one.mode]
     side = "above" if one.margin > 0.0 else "below"
     needed = f", needs {100.0 * one.required:.0f} %" if one.required else ""
     return (
-        f"{one.mode.name}, {one.mode.frequency:.0f} Hz, AF {one.mode.amplification:.3g}: "
+        f"{mode.name}, {mode.frequency:.0f} Hz, AF {mode.amplification:.3g}: "
         f"{100.0 * abs(one.margin):.0f} % {side} {one.harmonic} x {one.speed * RPM:.0f} rpm{needed}"
     )
 
@@ -88,7 +91,7 @@ def _of_stage(stage: StageLateral) -> Values:
 def _torsional(solved: SolvedRig) -> Values:
     for stage in _lateral(solved).of("held"):
         for one in stage.torsional:
-            yield abs(one.margin), f"stage {stage.stage}: {_words(one)}"
+            yield abs(one.margin), f"stage {stage.stage}: {_words(stage, one)}"
 
 
 _RULE = partial(RigRule, unit=NUMBER, group=GROUP, needs=BENDING)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from rigdesign.results.result import Finding
+from rigdesign.results.check import Finding
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from rigdesign.results.units import KILOWATT, LITRE_PER_MINUTE
 
 if TYPE_CHECKING:
     from rigdesign.postprocessing.solved_rig import SolvedRig
-    from rigdesign.results.housing import CoolingBalance
+    from rigdesign.results.housing import StageBalance
 
 GROUP = "oil"
 FLOWS = ("gearboxes.*.oil.flow", "gearboxes.*.bearing_oil.flow")
@@ -33,9 +33,9 @@ WALL_HEAT = of_gearboxes(
 )
 
 
-def _of_stages(value: Callable[[CoolingBalance], float]) -> Callable[[SolvedRig], Values]:
+def _of_stages(value: Callable[[StageBalance], float]) -> Callable[[SolvedRig], Values]:
     """A quantity of the heat balance at every held stage."""
-    return lambda solved: ((value(balance), f"stage {balance.stage}") for balance in solved.cooling)
+    return lambda solved: ((value(balance), f"stage {balance.cooling.stage}") for balance in solved.balances)
 
 
 RULES = (
@@ -47,7 +47,7 @@ RULES = (
         group=GROUP,
         source="limits.oil.flow_maximum",
         limit=lambda limits: limits.oil.flow_maximum,
-        values=_of_stages(lambda balance: balance.flow),
+        values=_of_stages(lambda balance: balance.cooling.flow),
         only_inputs=FLOWS,
     ),
     RigRule(
@@ -62,7 +62,7 @@ RULES = (
         group=GROUP,
         source="limits.oil.cooler_power_maximum",
         limit=lambda limits: limits.oil.cooler_power_maximum,
-        values=_of_stages(lambda balance: balance.cooler),
+        values=_of_stages(lambda balance: balance.cooling.cooler),
         leaves_out=(OIL_EXCHANGE, *HEAT),
         moved_by=frozenset({"housing", "rig heat"}),
     ),
@@ -77,7 +77,7 @@ RULES = (
         group=GROUP,
         source="limits.oil.heater_power_maximum",
         limit=lambda limits: limits.oil.heater_power_maximum,
-        values=_of_stages(lambda balance: balance.heater),
+        values=_of_stages(lambda balance: balance.cooling.heater),
         leaves_out=(WALL_HEAT, warming),
         moved_by=frozenset({"housing"}),
     ),

@@ -70,9 +70,9 @@ def steady_checks(solved: SolvedRig) -> Iterator[Check]:
         distances = [
             (
                 abs(balance.circuits[name].lines[line].supply - (given.setpoint or 0.0)),
-                f"stage {balance.stage}",
+                f"stage {balance.cooling.stage}",
             )
-            for balance in solved.cooling
+            for balance in solved.balances
             if name in balance.circuits
         ]
         yield SUPPLY.worst(solved, SUPPLY.rule(given.tolerance, place), distances)

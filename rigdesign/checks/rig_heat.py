@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -52,9 +51,9 @@ def checks(solved: SolvedRig) -> Iterator[Check]:
         found = [
             (
                 balance.heat.room.temperature,
-                f"stage {balance.stage}, {_air(balance.heat.room.needed_air_flow)}",
+                f"stage {balance.heat.stage}, {_air(balance.heat.room.needed_air_flow)}",
             )
-            for balance in solved.cooling
+            for balance in solved.balances
             if balance.heat.room is not None
         ]
         yield TEMPERATURE.worst(solved, TEMPERATURE.rule(room.temperature_maximum, place), found)
@@ -62,7 +61,7 @@ def checks(solved: SolvedRig) -> Iterator[Check]:
 
 def _air(flow: float | None) -> str:
     """Air flow that holds the limit [m3/s] as a reason shows it."""
-    if flow is None or math.isinf(flow):
+    if flow is None:
         return "no ventilation holds the limit"
     return f"{3600.0 * flow:.4g} m3/h of air hold the limit"
 

@@ -18,8 +18,7 @@ from rigdesign.checks.places import rig_gears, specimen_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, SPEEDS, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated, worst
 from rigdesign.results.check import NO_LIMIT, NO_LOADS, Check
-from rigdesign.results.dynamics import FROM_INFLUENCE
-from rigdesign.results.loads import RootStressPath
+from rigdesign.results.loads import FROM_INFLUENCE, RootStressPath
 from rigdesign.results.units import HOUR, MEGAPASCAL, MPA, NUMBER, RPM
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ from rigdesign.postprocessing import root
 from rigdesign.postprocessing.curves import state_at
 from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.loaded_contact import ROOT
-from rigdesign.results.dynamics import FROM_INFLUENCE, StressSource
+from rigdesign.results.loads import FROM_INFLUENCE, StressSource
 from rigdesign.results.teeth import DynamicRootCurve, DynamicRootRecord, MissingRootSpeed
 from rigdesign.rig.model import Rig
 from rigdesign.rig.strain_gauges import RootGauge

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.rotor.static_loop import LoopLoad, port_model, solve_static
-from dynamics.rotor.torsional_modes import sampling_audit
+from dynamics.rotor.torsional_modes import DampingRecord, sampling_audit
 from dynamics.tooth.root_field import PairForces
 from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.base.part_name import MeshName
@@ -31,23 +31,26 @@ from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.postprocessing.spectra import held_spectra, waterfalls
 from rigdesign.postprocessing.tooth_history import bent_both_ways
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
-from rigdesign.results.loads import MeshLoads
+from rigdesign.results.loads import (
+    HeldBracing,
+    JointDamping,
+    ListedMode,
+    MeshLoads,
+    StageBracing,
+    TorqueBalance,
+)
+from rigdesign.results.quantity import Records
 from rigdesign.results.serialisation import dynamics as rows
 from rigdesign.results.serialisation.teeth import (
     dynamic_root_rows,
     flank_rating_row,
     loaded_contact_row,
-    pair_share_row,
-    press_fit_row,
-    spline_stress_row,
     tooth_history_row,
 )
 from rigdesign.results.serialisation.vibration import (
     campbell_row,
     dwell_row,
     section_torque_rows,
-    spectrum_row,
-    waterfall_row,
 )
 from rigdesign.results.teeth import PairShare
 from rigdesign.results.vibration import (
@@ -74,30 +77,39 @@ def dynamics_section(solved: SolvedRig) -> DynamicsResult:
             rig.mesh_labels[name]: _mesh_section(solved, run, mesh, loads.meshes[rig.mesh_labels[name]])
             for mesh, name in enumerate(rig.mesh_names)
         },
-        natural_frequencies=[rows.mode_row(number, mode) for number, mode in numbered(loads.modes)],
-        damping_audit=[rows.damping_row(record) for record in loads.damping],
+        natural_frequencies=Records(
+            ListedMode(
+                mode=number,
+                frequency=mode.frequency,
+                damping_ratio=mode.damping_ratio,
+                shape=mode.name,
+                largest_at=mode.largest,
+            )
+            for number, mode in numbered(loads.modes)
+        ),
+        damping_audit=Records(_joint_damping(record) for record in loads.damping),
         sampling={
             "sample_rate_Hz": rig.case.numerics.sample_rate,
             "mesh_frequency_Hz": sampling.mesh_frequency,
             "samples_per_mesh": sampling.samples_per_mesh,
             "internal_steps_per_mesh": sampling.samples_per_mesh * rig.case.numerics.internal_steps,
         },
-        bracing=[rows.bracing_row(bracing) for bracing in loads.bracing],
+        bracing=Records(_held_bracing(bracing) for bracing in loads.bracing),
         ramp=ramp_history(rig, run.ramp),
-        torque_balance=[torque_balance(rig, point) for point in run.points],
+        torque_balance=Records(torque_balance(rig, point) for point in run.points),
         tooth_histories=[
             tooth_history_row(history, rated=bent_both_ways(rig, gear))
             for gear, history in loads.teeth.items()
         ],
-        loop_crossings=[rows.mode_crossing_row(crossing) for crossing in loads.loop_crossings],
+        loop_crossings=Records(loads.loop_crossings),
         campbell=campbell_row(vibration.campbell),
         section_torques=section_torque_rows(torques),
         dwell=dwell_row(dwell_record(solved, torques)),
-        press_fits=[press_fit_row(found) for found in solved.press_fits],
-        splines=[spline_stress_row(found) for found in solved.splines],
-        pair_shares=[pair_share_row(found) for found in pair_shares(rig, run)],
-        waterfalls=[waterfall_row(found) for found in waterfalls(rig, run)],
-        spectra=[spectrum_row(found) for found in held_spectra(rig, run)],
+        press_fits=Records(solved.press_fits),
+        splines=Records(solved.splines),
+        pair_shares=Records(pair_shares(rig, run)),
+        waterfalls=Records(waterfalls(rig, run)),
+        spectra=Records(held_spectra(rig, run)),
         dynamic_root=dynamic_root_rows(dynamic_root(rig, run)),
     )
 
@@ -121,14 +133,14 @@ def _mesh_section(solved: SolvedRig, run: DynamicRun, mesh: int, loads: MeshLoad
             for other, (_, curve) in run.curves.named.items()
             if other != main
         },
-        stage_loads=[rows.stage_load_row(load) for load in loads.stage_loads],
+        stage_loads=Records(loads.stage_loads),
         dynamic_torque_peak_Nm=loads.torque_peak,
         iso_factors=_flat(asdict(iso)),
-        lift_off=[rows.contact_loss_row(loss) for loss in loads.contact_losses],
-        resonances=[rows.resonance_row(resonance) for resonance in loads.resonances],
-        unsolved=[rows.unsolved_row(speed) for speed in loads.unsolved],
+        lift_off=Records(loads.contact_losses),
+        resonances=Records(loads.resonances),
+        unsolved=Records(loads.unsolved),
         root_stress=[rows.root_stress_row(path) for path in loads.root_stress],
-        root_stress_factor=[rows.root_ratio_row(ratio) for ratio in loads.root_stress_ratios],
+        root_stress_factor=Records(loads.root_stress_ratios),
         geometry=rows.geometry_row(rig.pairs[name], solved.test.last.models[mesh]),
         flank_ratings=[flank_rating_row(rating) for rating in flank_ratings(rig, solved.points, mesh)],
         loaded_contact=None if contact is None else loaded_contact_row(contact),
@@ -146,19 +158,46 @@ def _flat(record: Mapping[str, Any]) -> dict[str, float | str]:
     return flat
 
 
-def torque_balance(rig: Rig, point: PointResult) -> dict[str, Any]:
-    """Motor power against the losses of one held point [W]."""
+def _joint_damping(record: DampingRecord) -> JointDamping:
+    """A joint without damping has no corner frequency."""
+    corner = record.corner_frequency
+    return JointDamping(
+        joint=record.name,
+        kind=record.kind,
+        damping_ratio=record.damping_ratio,
+        corner_frequency=corner if math.isfinite(corner) else None,
+        own_frequency=record.own_frequency,
+        warning=record.warning,
+    )
+
+
+def _held_bracing(bracing: StageBracing) -> HeldBracing:
+    warm, as_set = bracing.drift.warm, bracing.drift.initial
+    return HeldBracing(
+        stage=bracing.stage,
+        mode=warm.mode,
+        torque=float(warm.torque[0]),
+        twist=warm.twist,
+        axial_shift=warm.shift,
+        half_gear_rotation=warm.rotation,
+        actuator_force=warm.actuator_force,
+        spline_friction=warm.friction_force,
+        loop_stiffness=warm.loop_stiffness,
+        torque_as_drawn=float(as_set.torque[0]),
+        axial_shift_as_drawn=as_set.shift,
+    )
+
+
+def torque_balance(rig: Rig, point: PointResult) -> TorqueBalance:
+    """Motor power against the losses of one held point."""
     response = point.last.response
     assert response is not None
-    drive = response.drive_torque * rig.drive_speed(point.point.speed)
-    losses = math.fsum(placed.loss.power for placed in point.last.losses)
-    return {
-        "stage": point.point.stage,
-        "drive_torque_Nm": response.drive_torque,
-        "drive_power_W": drive,
-        "losses_W": losses,
-        "joints_W": drive - losses,
-    }
+    return TorqueBalance(
+        stage=point.point.stage,
+        drive_torque=response.drive_torque,
+        drive_power=response.drive_torque * rig.drive_speed(point.point.speed),
+        losses=math.fsum(placed.loss.power for placed in point.last.losses),
+    )
 
 
 # Load of the tooth pairs in motion: how they share the force of the mesh, and how it lies over the face.

@@ -51,7 +51,7 @@ from rigdesign.postprocessing.curves import LEAST_GAIN, held_modes
 from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.passing_peaks import passing_peaks
 from rigdesign.postprocessing.run_torques import shear_stress
-from rigdesign.results.loads import EventCurve, EventPeak, EventRecord, Quantity, Reversal
+from rigdesign.results.loads import EventCurve, EventPeak, EventRecord, Load, Reversal
 from rigdesign.rig.model import Rig
 
 # The solved rig where an event happens: its loop, drags and channels, and what is kept of a march.
@@ -122,7 +122,7 @@ def travel_warnings(rig: Rig, travels: Mapping[str, float], clearances: Mapping[
 CONTROLLED = BracingState(mode="torque_controlled")
 SLOTS = 400
 """Slots of time of a curve."""
-QUANTITIES: dict[str, Quantity] = {
+QUANTITIES: dict[str, Load] = {
     "coupling": "coupling torque", "shaft": "shaft torque", "spline": "seat torque", "bearing": "bearing force"
 }  # fmt: skip
 
@@ -261,7 +261,7 @@ class EventPlace:
     def _peaks(self, history: EventHistory) -> Iterator[EventPeak]:
         meshes = tuple(self._peaks_of_meshes(history))
         yield from meshes
-        found: dict[tuple[str, Quantity], EventPeak] = {}
+        found: dict[tuple[str, Load], EventPeak] = {}
         for i, channel in enumerate(self.channels):
             if channel.kind not in QUANTITIES:
                 continue
@@ -308,7 +308,7 @@ class EventPlace:
             )
 
 
-def _peak(place: str, quantity: Quantity, before: float, amount: Array, time: Array) -> EventPeak:
+def _peak(place: str, quantity: Load, before: float, amount: Array, time: Array) -> EventPeak:
     at = int(amount.argmax())
     return EventPeak(
         place=place,
@@ -328,7 +328,7 @@ def _at_section(peak: EventPeak, section: TorqueSection | None) -> EventPeak:
 
 
 def _curve(
-    place: str, quantity: Quantity, least: Array, greatest: Array, slots: Sequence[NDArray[np.int64]]
+    place: str, quantity: Load, least: Array, greatest: Array, slots: Sequence[NDArray[np.int64]]
 ) -> EventCurve:
     return EventCurve(
         place=place,

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -12,6 +11,8 @@ from rigdesign.case.geometry import seals_on
 from rigdesign.coupling.expansion import centrifugal_expansion
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.postprocessing.solved_rig import SolvedRig
+from rigdesign.results.check import HandCalculation
+from rigdesign.results.quantity import Records
 from rigdesign.results.units import MM, UM
 from rigdesign.results.warm_gearbox import WarmGearbox
 from thermal.conduction.balance import HeatFlow
@@ -39,16 +40,16 @@ RISE = (
 )
 
 
-def hand_checks(solved: SolvedRig) -> list[dict[str, Any]]:
-    """quantity, computed, by_hand, unit, formula; in the order of the report."""
-    return [*_loads(solved), *_losses(solved), *_expansion(solved)]
+def hand_checks(solved: SolvedRig) -> Records[HandCalculation]:
+    """In the order of the report."""
+    return Records([*_loads(solved), *_losses(solved), *_expansion(solved)])
 
 
-def _row(quantity: str, computed: float, by_hand: float, unit: str, formula: str) -> dict[str, Any]:
-    return {"quantity": quantity, "computed": computed, "by_hand": by_hand, "unit": unit, "formula": formula}
+def _row(quantity: str, computed: float, by_hand: float, unit: str, formula: str) -> HandCalculation:
+    return HandCalculation(quantity=quantity, computed=computed, by_hand=by_hand, unit=unit, formula=formula)
 
 
-def _loads(solved: SolvedRig) -> list[dict[str, Any]]:
+def _loads(solved: SolvedRig) -> list[HandCalculation]:
     last, rig = solved.test.last, solved.rig
     rows = []
     for model in last.models:
@@ -87,7 +88,7 @@ def mean_gap(model: MeshModel) -> float:
     return float(np.average(law.gap[:, active], weights=law.stiffness[:, active]))
 
 
-def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
+def _losses(solved: SolvedRig) -> list[HandCalculation]:
     rows = []
     for placed in solved.test.last.losses:
         details = placed.loss.details
@@ -111,10 +112,7 @@ def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
                 )
             )  # fmt: skip
     for balance in solved.cooling:
-        given = math.fsum(
-            (balance.losses, balance.pump, balance.heater, balance.circulation, balance.machines)
-        )
-        taken = math.fsum((balance.cooler, balance.room, balance.tanks))
+        given, taken = balance.put_in, balance.taken_out
         rows.append(
             _row(f"heat carried away, stage {balance.stage}", taken, given, "W",
                  "cooler + room = losses + jets of the pump + heaters")
@@ -122,7 +120,7 @@ def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
     return rows
 
 
-def _expansion(solved: SolvedRig) -> list[dict[str, Any]]:
+def _expansion(solved: SolvedRig) -> list[HandCalculation]:
     rows = []
     for warm in solved.warm:
         rows += [

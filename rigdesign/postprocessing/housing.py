@@ -26,9 +26,12 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.oil import heater_and_cooler
 from rigdesign.coupling.oil_circuits import DriveHeat, circuit_balances, drive_heat, into_tank
 from rigdesign.coupling.temperatures import HousingField, body_mean, heat_stored, heat_to_room, solve_housing
-from rigdesign.oil_circuit.steady import SteadyCircuit
+from rigdesign.oil_circuit.steady import DeviceLoad, SteadyCircuit
 from rigdesign.results.housing import (
     BodyTemperature,
+    CircuitBalance,
+    CircuitDevice,
+    CircuitLine,
     CoolingBalance,
     FluidTemperature,
     GearHeatSplit,
@@ -36,20 +39,22 @@ from rigdesign.results.housing import (
     HousingTemperatures,
     RadiationReadings,
     RigHeat,
+    RoomTemperature,
     Sink,
+    StageBalance,
 )
 from rigdesign.results.thermal import TemperatureField
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import ChamberOil
-from rigdesign.rig_heat.component import ComponentHeat, RoomBalance, room_balance
+from rigdesign.rig_heat.component import ComponentHeat, room_balance
 from thermal.conditions.boundary import Film, SurfaceSource
 from thermal.conduction.setup import Condition, heat_flux
 from thermal.conduction.steady import solve_steady
 from thermal.films.flank import fin_efficiency, tooth_excess
 
 
-def cooling_balance(rig: Rig, last: IterationResult) -> CoolingBalance:
-    """What cooler and room take out against what shafts, pump and heaters put in, at one held stage."""
+def stage_balance(rig: Rig, last: IterationResult) -> StageBalance:
+    """Heat of the whole rig at one held stage, with its oil circuits."""
     damped = math.fsum(placed.not_heat for placed in last.losses)
     heats = {str(stream.name): np.array([stream.to_tank]) for stream in last.streams}
     balances = circuit_balances(rig, last)
@@ -59,7 +64,7 @@ def cooling_balance(rig: Rig, last: IterationResult) -> CoolingBalance:
     by_oil = [part for part in drive.machines if into_oil(rig, part)]
     steady = rig.case.ambient.warming_time is None
     streams, volumes = carried_and_given(rig, last.fields)
-    return CoolingBalance(
+    cooling = CoolingBalance(
         stage=last.point.stage,
         losses=math.fsum(placed.loss.power for placed in last.losses) - damped,
         pump=math.fsum(placed.pumped for placed in last.losses),
@@ -75,14 +80,13 @@ def cooling_balance(rig: Rig, last: IterationResult) -> CoolingBalance:
         stored=None if steady else math.fsum(heat_stored(field) for field in last.fields.values()),
         not_heat=damped,
         flow=math.fsum(stream.flow for stream in last.streams),
-        circulation=math.fsum(found.pump_heat for found in circuits),
-        tanks=math.fsum(found.wall_loss for found in circuits),
-        machines=math.fsum(part.to_coolant for part in by_oil),
-        circuits=balances,
+        circulation=math.fsum(found.pump_heat for found in circuits) if circuits else None,
+        tanks=math.fsum(found.wall_loss for found in circuits) if circuits else None,
+        machines=math.fsum(part.to_coolant for part in by_oil) or None,
         streams=streams,
         volumes=volumes,
-        heat=rig_heat(rig, last, drive, balances, heater),
     )
+    return StageBalance(cooling=cooling, heat=rig_heat(rig, last, drive, balances, heater), circuits=balances)
 
 
 def compared_temperatures(rig: Rig, result: PointResult, field: HousingField) -> HousingTemperatures:
@@ -425,15 +429,25 @@ def into_oil(rig: Rig, part: ComponentHeat) -> bool:
     return part.split.coolant in (*rig.case.oil_circuits, OIL_COOLER)
 
 
-def _room(rig: Rig, sources: Sequence[HeatSource]) -> RoomBalance | None:
+def _room(rig: Rig, sources: Sequence[HeatSource]) -> RoomTemperature | None:
     room = rig.heat_parts.room
     if room is None:
         return None
     heats = {f"{source.kind} {source.name}": source.sinks.get("room", 0.0) for source in sources}
-    return room_balance(room, {name: heat for name, heat in heats.items() if heat})
+    found = room_balance(room, {name: heat for name, heat in heats.items() if heat})
+    needed = found.needed_air_flow
+    return RoomTemperature(
+        temperature=found.temperature,
+        limit=room.temperature_limit,
+        heat=found.heat,
+        by_air=found.by_air,
+        by_walls=found.by_walls,
+        air_flow=room.air_flow,
+        needed_air_flow=None if needed is None or math.isinf(needed) else needed,
+    )
 
 
-def _warnings(rig: Rig, drive: DriveHeat, room: RoomBalance | None) -> tuple[str, ...]:
+def _warnings(rig: Rig, drive: DriveHeat, room: RoomTemperature | None) -> tuple[str, ...]:
     found = [f"{part.name}: {text}" for part in drive.components for text in part.warnings]
     ambient = rig.case.ambient.temperature
     if room is not None and abs(room.temperature - ambient) > FAR_FROM_AMBIENT:
@@ -442,3 +456,46 @@ def _warnings(rig: Rig, drive: DriveHeat, room: RoomBalance | None) -> tuple[str
             f"{celsius(ambient)} (ambient.temperature); write that of the room and compute again"
         )
     return tuple(found)
+
+
+def circuit_balances_at(balance: StageBalance) -> Iterator[CircuitBalance]:
+    """Every oil circuit of one held stage: tank, lines, heaters and coolers with what they need and can do."""
+    for name, found in balance.circuits.items():
+        pump = found.circuit.pump
+        yield CircuitBalance(
+            circuit=name,
+            stage=balance.cooling.stage,
+            tank=found.tank_temperature,
+            flow=found.circuit.flow,
+            heater=found.heater_power,
+            cooler=found.cooler_heat,
+            pump=pump.shaft_power if pump else 0.0,
+            machines=found.machine_heat,
+            room=found.room_loss,
+            imbalance=found.imbalance,
+            lines=tuple(_line(found, line) for line in found.lines),
+            devices=tuple(_devices(found)),
+        )
+
+
+def _line(found: SteadyCircuit, name: str) -> CircuitLine:
+    line, given = found.lines[name], next(each for each in found.circuit.lines if each.name == name)
+    return CircuitLine(
+        line=name,
+        setpoint=given.setpoint,
+        tolerance=given.tolerance,
+        supply=line.supply,
+        drain=line.drain,
+        back=line.back,
+        flow=given.flow,
+        heat=sum(line.heats.values()),
+    )
+
+
+def _devices(found: SteadyCircuit) -> Iterator[CircuitDevice]:
+    loads: dict[str, DeviceLoad | None] = {"heater": found.heater, "tank cooler": found.tank_cooler}
+    loads |= {f"trim heater of {line}": load for line, load in found.trim_heaters.items()}
+    loads |= {f"cooler of {line}": load for line, load in found.line_coolers.items()}
+    for name, load in loads.items():
+        if load is not None:
+            yield CircuitDevice(device=name, power=load.power, needed=load.needed, capability=load.capability)

@@ -13,12 +13,12 @@ from rigdesign.coupling.state import OperatingPoint
 from rigdesign.postprocessing.curves import curve_at, dense, loop_states, response_solver, torque_key
 from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.run_torques import LoopOverSpeed, torques_over_speed
-from rigdesign.results.loads import PassingPeak, Quantity
+from rigdesign.results.loads import Load, PassingPeak
 from rigdesign.results.units import RPM
 from rigdesign.results.vibration import PlaceKind, TorqueOverSpeed
 from rigdesign.rig.model import Rig
 
-PEAK_QUANTITIES: dict[PlaceKind, Quantity] = {
+PEAK_QUANTITIES: dict[PlaceKind, Load] = {
     "coupling": "coupling torque", "shaft": "shaft torque", "spline": "seat torque", "mesh": "mesh torque"
 }  # fmt: skip
 

@@ -26,7 +26,7 @@ from rigdesign.postprocessing.gear_loads import (
     rated_cycles,
     rated_loads,
 )
-from rigdesign.postprocessing.housing import cooling_balance
+from rigdesign.postprocessing.housing import stage_balance
 from rigdesign.postprocessing.loaded_contact import HeldContact, held_contact
 from rigdesign.postprocessing.nearest_resonance import (
     NearDwell,
@@ -47,7 +47,7 @@ from rigdesign.postprocessing.tooth_history import (
 from rigdesign.postprocessing.vibration import LoopVibration
 from rigdesign.postprocessing.warm_gearbox import warm_gearbox
 from rigdesign.results.check import NO_HOUSING, Role
-from rigdesign.results.housing import CoolingBalance, HousingTemperatures
+from rigdesign.results.housing import CoolingBalance, HousingTemperatures, StageBalance
 from rigdesign.results.lateral import LateralVibration
 from rigdesign.results.loads import DynamicLoads, EventRecord, PressFitCapacity, SplineStress
 from rigdesign.results.result import DiscretisationRow, MeshShift
@@ -107,7 +107,8 @@ class SolvedRig:
     """Of every gearbox with a housing."""
     warm: Sequence[WarmGearbox] = ()
     """Clearances and alignment of every gearbox whose housing is expanded."""
-    cooling: Sequence[CoolingBalance] = ()
+    balances: Sequence[StageBalance] = ()
+    """Heat of the whole rig at every held stage."""
     history: HistoryExtremes | None = None
     """None where no thermal history was asked for."""
     events: Sequence[EventRecord] = ()
@@ -123,6 +124,11 @@ class SolvedRig:
         """What the warm loop does at its held stages and over speed."""
         own = LoopVibration(self.rig, tuple(self.points), self.run, self.loads)
         return self.loop if self.loop is not None and self.loop.is_of(own) else own
+
+    @property
+    def cooling(self) -> list[CoolingBalance]:
+        """What shafts, pump and heaters put in and cooler and room take out at every held stage."""
+        return [balance.cooling for balance in self.balances]
 
     @property
     def lateral(self) -> LateralVibration | None:
@@ -333,7 +339,7 @@ def solved_rig(
         loop=LoopVibration(rig, tuple(points), run, loads),
         temperatures=temperatures,
         warm=[warm_gearbox(rig, point, name) for point in points for name in point.last.expansion],
-        cooling=[cooling_balance(rig, point.last) for point in points],
+        balances=[stage_balance(rig, point.last) for point in points],
     )
 
 

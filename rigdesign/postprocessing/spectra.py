@@ -24,6 +24,8 @@ from rigdesign.rig.model import Rig
 Array = NDArray[np.float64]
 SHORTEST, LONGEST = 256, 32768
 """Samples of a block of a waterfall."""
+DIGITS = 4
+"""Significant digits of the amplitudes of a waterfall: it is looked at, not computed with."""
 OVERLAP = 0.5
 MOST_SPEEDS, MOST_FREQUENCIES = 72, 160
 """Cells of a waterfall; each keeps its largest amplitude."""
@@ -82,7 +84,7 @@ def _waterfall(
         stage=stage.name,
         speed=tuple((ratio * places[0]).tolist()),
         frequency=tuple(bins[0].tolist()),
-        amplitude=tuple(tuple(row) for row in bins[1].tolist()),
+        amplitude=tuple(tuple(float(f"{value:.{DIGITS}g}") for value in row) for row in bins[1].tolist()),
         per_turn=float(teeth),
     )
 

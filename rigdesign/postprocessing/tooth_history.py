@@ -34,7 +34,7 @@ from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.postprocessing import root
 from rigdesign.postprocessing.gear_loads import application_factor
 from rigdesign.properties.materials import Material
-from rigdesign.results.dynamics import FROM_FACTORS, FROM_INFLUENCE
+from rigdesign.results.loads import FROM_FACTORS, FROM_INFLUENCE
 from rigdesign.results.teeth import ToothHistory
 from rigdesign.rig.model import Rig
 

@@ -34,15 +34,16 @@ from rigdesign.postprocessing.nearest_resonance import NearDwell, near_dwells
 from rigdesign.postprocessing.run_torques import LoopOverSpeed, Solve, held_torques, torques_over_speed
 from rigdesign.postprocessing.start_torque import StartResponse, start_response
 from rigdesign.results.lateral import (
+    BearingOrbit,
     BearingWhirl,
     LateralVibration,
     MeshWhirl,
     SealWhirl,
     SeatStiffness,
     Separation,
-    SpeedWhirl,
     StageLateral,
     Torque,
+    WhirlCurve,
 )
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.vibration import CampbellRecord, HeldTorque, TorqueOverSpeed
@@ -164,7 +165,7 @@ def lateral_vibration(rig: Rig, points: Sequence[PointResult]) -> LateralVibrati
         idle = replace(state, mesh_torque=dict.fromkeys(state.mesh_torque, 0.0))
         stages.append(whirls.stage(point, idle, solve_bearings(rig, point.point, idle), "lost"))
     return LateralVibration(
-        stages=tuple(stages), curve=tuple(whirls.curve(points)), seats=tuple(seat_stiffnesses(rig))
+        stages=tuple(stages), curve=whirls.curve(points), seats=tuple(seat_stiffnesses(rig))
     )
 
 
@@ -222,15 +223,28 @@ class _Whirls:
             torsional=tuple(_torsional_separations(rig, modes, point.point.speed)),
         )
 
-    def curve(self, points: Sequence[PointResult]) -> Iterator[SpeedWhirl]:
+    def curve(self, points: Sequence[PointResult]) -> WhirlCurve:
         """Bearings over speed under torque and temperatures of the governing stage."""
         rig, held = self.rig, governing_point(points)
         state, top = held.last.coupling_state, max(point.point.speed for point in points)
+        speeds, found = [], []
         for share in SPEEDS:
             at = replace(held.point, speed=share * top)
             running = self.running(at, state, solve_bearings(rig, at, state), held.last.models)
             whirls = line_whirls(rig.elastic.slow, running, self.loads)
-            yield SpeedWhirl(speed=at.speed, bearings=tuple(self.bearing_whirls(running, state, whirls)))
+            speeds.append(at.speed)
+            found.append(list(self.bearing_whirls(running, state, whirls)))
+        return WhirlCurve(
+            speed=tuple(speeds),
+            bearings=tuple(
+                BearingOrbit(
+                    bearing=over_speed[0].bearing,
+                    orbit=tuple(whirl.amplitude for whirl in over_speed),
+                    clearance=over_speed[0].clearance,
+                )
+                for over_speed in zip(*found, strict=True)
+            ),
+        )
 
     def running(
         self,
@@ -347,14 +361,14 @@ def _sum(orbits: Mapping[str, object]) -> float:
 
 def _lateral_separations(rig: Rig, modes: Sequence[RigMode], speed: float) -> Iterator[Separation]:
     """Lateral modes that unbalance excites, against the speed of the shaft that moves most."""
-    for mode in modes:
+    for number, mode in enumerate(modes):
         if mode.family != "lateral" or mode.whirl < BACKWARD:
             continue
         own = rig.shaft_speed(mode.shaft, speed)
         margin = 2.0 * np.pi * mode.frequency / own - 1.0
         rule = separation_above if margin > 0.0 else separation_below
         yield Separation(
-            mode=mode, speed=own, harmonic=1, margin=float(margin), required=rule(mode.amplification)
+            mode=number, speed=own, harmonic=1, margin=float(margin), required=rule(mode.amplification)
         )
 
 
@@ -363,12 +377,12 @@ def _torsional_separations(rig: Rig, modes: Sequence[RigMode], speed: float) -> 
     found = []
     for own in {round(abs(rig.shaft_speed(shaft, speed)), 9) for shaft in speed_ratios(rig.drivetrain)}:
         for harmonic in (1, 2):
-            for mode in modes:
+            for number, mode in enumerate(modes):
                 if mode.family == "torsion":
                     margin = 2.0 * np.pi * mode.frequency / (harmonic * own) - 1.0
                     found.append(
                         Separation(
-                            mode=mode,
+                            mode=number,
                             speed=own,
                             harmonic=harmonic,
                             margin=float(margin),

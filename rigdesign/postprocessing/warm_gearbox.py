@@ -1,5 +1,6 @@
 """Clearances and alignment of a warm gearbox: seals, shafts, meshes, bearings, bores, axes, couplings."""
 
+import math
 from collections.abc import Iterable, Iterator
 
 from dynamics.rotor.rolling_state import rolling_state
@@ -186,23 +187,26 @@ def rolling_bearings(rig: Rig, points: Iterable[PointResult]) -> Iterator[Rollin
                 continue
             friction, life = state.friction, state.life
             yield RollingBearingRecord(
-                name=name,
+                bearing=name,
                 stage=point.point.stage,
                 designation=rig.bearing(name).label,
                 radial_load=state.load,
                 axial_load=state.axial_load,
                 speed=state.omega,
-                torques=(friction.rolling, friction.sliding, friction.seals, friction.drag),
-                power=state.power,
+                rolling_torque=friction.rolling,
+                sliding_torque=friction.sliding,
+                seal_torque=friction.seals,
+                drag_torque=friction.drag,
+                friction=state.power,
                 temperature=state.film_temperature,
                 inner_ring=state.inner_ring_temperature,
                 outer_ring=state.outer_ring_temperature,
                 heat_to_shaft=state.heat_to_shaft,
                 heat_to_housing=state.heat_to_housing,
-                clearance=point.last.coupling_state.bearing_clearance[name],
-                basic_life=life.basic_life,
-                modified_life=life.modified_life,
-                static_safety=life.static_safety,
+                operating_clearance=point.last.coupling_state.bearing_clearance[name],
+                basic_life=_finite(life.basic_life),
+                modified_life=_finite(life.modified_life),
+                static_safety=_finite(life.static_safety),
                 viscosity_ratio=life.viscosity_ratio,
                 speed_utilisation=state.speed_utilisation,
                 minimum_load=state.minimum_load,
@@ -210,3 +214,7 @@ def rolling_bearings(rig: Rig, points: Iterable[PointResult]) -> Iterator[Rollin
                 axial_stiffness=state.stiffness.axial,
                 tilting_stiffness=state.stiffness.tilting,
             )
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

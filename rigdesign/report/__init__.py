@@ -43,7 +43,7 @@ def write_results(result: RunResult, out: Path, issue: Issue | None = None, *, p
     """
     from rigdesign.report.junit import write_junit
 
-    document = results_document(result)
+    document = results_document(result, beside_files=True)
     earlier = _published_before(out)
     with staged(out) as scratch:
         document["fields"] = _write_fields(result, scratch)

@@ -205,8 +205,6 @@ def split_key(key: str) -> tuple[str, str]:
     return key.replace("_", " "), ""
 
 
-HEADINGS = {"open": "imbalance"}
-"""Keys that read otherwise in a heading."""
 WORDS = {"growth": "expansion", "cold": "as drawn", "hot": "warm"}
 """Words of keys that read otherwise in a heading."""
 
@@ -214,7 +212,7 @@ WORDS = {"growth": "expansion", "cold": "as drawn", "hot": "warm"}
 def heading_text(key: str) -> str:
     """Column heading of a key, unit in square brackets."""
     words, unit = split_key(key)
-    words = HEADINGS.get(words, " ".join(WORDS.get(word, word) for word in words.split()))
+    words = " ".join(WORDS.get(word, word) for word in words.split())
     return f"{words} [{unit}]" if unit else words
 
 

@@ -17,7 +17,8 @@ from rigdesign.report.numbers import (
 )
 from rigdesign.report.views import applicable, sorted_checks
 from rigdesign.results.check import Check
-from rigdesign.results.dynamics import FROM_INFLUENCE, GearboxDynamics
+from rigdesign.results.dynamics import GearboxDynamics
+from rigdesign.results.loads import FROM_INFLUENCE
 from rigdesign.results.ranges import CheckRange, RangedInput, RangeMargin, RangesResult
 from rigdesign.results.result import Flip, RunResult
 

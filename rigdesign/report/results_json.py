@@ -1,131 +1,105 @@
 """results.json: every result but the nodal fields, the same bytes for the same case; and read again."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any
 
 from rigdesign.base.errors import WIDEST_PLACE, NotConvergedError, UsageError, shortened
 from rigdesign.base.json_text import to_plain, to_text
 from rigdesign.base.output_folder import write_whole
 from rigdesign.base.version import RESULTS_SCHEMA_VERSION, __version__
-from rigdesign.results.check import Check, Checks
-from rigdesign.results.result import CouplingHistory, RunResult
+from rigdesign.results.curve_files import PLACE, with_references, without_references
+from rigdesign.results.document import as_shown, record_of, schema_of
+from rigdesign.results.quantity import shown
+from rigdesign.results.result import RunResult
 from rigdesign.studies.stored_results import AGAIN, read_document
 
-WITHOUT_DYNAMICS: Mapping[str, Any] = {"gearboxes": {}}
-"""What stands for the dynamics of a rig without drivetrain."""
 
-
-def results_document(result: RunResult) -> dict[str, Any]:
+def results_document(result: RunResult, *, beside_files: bool = False) -> dict[str, Any]:
     """Content of results.json as plain dicts, lists, strings and finite numbers.
 
-    Units stand in the key (``_Nm``, ``_degC``) or in the field ``unit`` next to the value.
+    Units stand in the key (``_Nm``, ``_degC``) or in the field ``unit`` next to the value. A check names its
+    assumptions by their numbers in ``assumptions``.
+
+    beside_files : curves that stand in the files of curves are named (`rigdesign.results.curve_files`)
 
     Raises
     ------
     NonFiniteResultError
         If a number is NaN or infinite; names the key.
     """
-    document: dict[str, Any] = {
-        "schema_version": RESULTS_SCHEMA_VERSION,
-        "tool_version": __version__,
-        "case": result.case,
-        "fidelity": result.fidelity,
-        "verdict": result.verdict,
-        "checks": result.checks,
-        "dynamics": result.dynamics if result.dynamics is not None else WITHOUT_DYNAMICS,
-        "losses": result.losses,
-        "oil": result.oil,
-        "cooler": result.cooler,
-        "thermal": result.thermal,
-        "growth": result.expansion,
-        "coupling": _coupling(result.coupling),
-        "discretisation": result.discretisation,
-        "reference_shift": result.reference_shift,
-        "hand_checks": result.hand_checks,
-        "inputs": result.inputs,
-        "assumptions": result.assumptions,
-        "overrides": result.overrides,
-        "not_modelled": result.not_modelled,
-        "warnings": result.warnings,
-        "flips": result.flips,
-        "flip_search": result.flip_search,
-        "timings_s": result.timings_s,
-    }
-    if result.events:
-        document["events"] = result.events
-    if result.rolling_bearings:
-        document["rolling_bearings"] = result.rolling_bearings
-    if result.lateral is not None:
-        document["lateral"] = result.lateral
-    if result.rig_heat:
-        document["rig_heat"] = result.rig_heat
-    if result.oil_circuits:
-        document["oil_circuits"] = result.oil_circuits
-    if result.ranges is not None:
-        document["ranges"] = result.ranges
-    if result.transient is not None:
-        document["transient"] = result.transient
-    plain: dict[str, Any] = to_plain(document)
+    items = [item for item in shown(RunResult).values() if item.name != "fields"]
+    document = {item.key: as_shown(item.of(result)) for item in items}
+    numbers = {record.path: number for number, record in enumerate(result.assumptions)}
+    for check in document["checks"]:
+        check["assumptions"] = [numbers.get(path, path) for path in check["assumptions"]]
+    for record in document["assumptions"]:
+        del record["decides"]
+    if beside_files:
+        document = with_references(document, result.columns)
+    plain: dict[str, Any] = to_plain(
+        {"schema_version": RESULTS_SCHEMA_VERSION, "tool_version": __version__, **document}
+    )
     return plain
 
 
-def _coupling(histories: Sequence[CouplingHistory]) -> dict[str, Any]:
-    """``iterations`` of the slowest stage and the residuals of every iteration of every stage."""
-    return {
-        "iterations": max((history.iterations for history in histories), default=0),
-        "residuals": [
-            {"stage": history.stage, "pass": number, **residual}
-            for history in histories
-            for number, residual in enumerate(history.residuals, start=1)
-        ],
+def results_schema() -> dict[str, Any]:
+    """JSON Schema of results.json, from the classes of the result."""
+    texts = {"type": "array", "items": {"type": "string"}}
+    field = {"type": "object", "properties": {"file": {"type": "string"}}, "required": ["file"]}
+    schema: dict[str, Any] = schema_of(
+        RunResult, {"fields": {"type": "array", "items": field}}, {"$ref": "#/$defs/Place"}
+    )
+    schema["properties"] = {
+        "schema_version": {"const": RESULTS_SCHEMA_VERSION},
+        "tool_version": {"type": "string"},
+        **schema["properties"],
+        "files": texts,
     }
+    schema["required"] = [key for key in schema["properties"] if key not in ("fields", "files")]
+    records = schema["$defs"]
+    numbers = {"description": "Numbers of the rows in assumptions.", "type": "array", "items": {}}
+    records["Check"]["properties"]["assumptions"] = numbers
+    del records["AssumptionRecord"]["properties"]["decides"]
+    records["AssumptionRecord"]["required"].remove("decides")
+    records["Place"] = PLACE
+    return schema
 
 
 def read_result(path: Path) -> tuple[RunResult, Path]:
     """The result that a folder of `rigdesign check --out`, or its results.json, holds; and that file.
 
-    Numbers have the ten digits of the file. ``fields`` holds those whose .vtu files stand beside it.
+    Numbers have the ten digits of the files. ``fields`` holds those whose .vtu files stand beside it.
 
     Raises
     ------
     UsageError
-        If there is none, it is damaged or of another schema version; says what to do.
+        If there is none, it is damaged or of another schema version, or files of its curves are missing; says what to
+        do.
     """
-    from pydantic import TypeAdapter, ValidationError
-
     from rigdesign.report.fields import read_fields
 
-    file, document = read_document(
+    file, stored = read_document(
         path, "report takes a folder that `rigdesign check --out` wrote, or its results.json"
     )
     try:
-        values = {
-            **document,
-            "dynamics": None if document["dynamics"] == WITHOUT_DYNAMICS else document["dynamics"],
-            "expansion": document["growth"],
-            "coupling": _histories(document["coupling"]["residuals"]),
-        }
-        own = {
-            name: TypeAdapter(kind).validate_python(values[name])
-            for name, kind in get_type_hints(RunResult).items()
-            if name in values and name not in ("checks", "fields")
-        }
-        checks = Checks(TypeAdapter(list[Check]).validate_python(values["checks"]))
-        return RunResult(**own, checks=checks, fields=read_fields(document["fields"], file.parent)), file
-    except (KeyError, TypeError, ValidationError) as error:
+        document = without_references(stored, file.parent)
+        paths = [record["path"] for record in document["assumptions"]]
+        for check in document["checks"]:
+            check["assumptions"] = [
+                paths[path] if isinstance(path, int) else path for path in check["assumptions"]
+            ]
+        for record in document["assumptions"]:
+            record["decides"] = [
+                check["id"] for check in document["checks"] if record["path"] in check["assumptions"]
+            ]
+        result: RunResult = record_of(RunResult, {**document, "fields": []})
+        return replace(result, fields=read_fields(document["fields"], file.parent)), file
+    except (KeyError, IndexError, TypeError, ValueError) as error:
         what = shortened(f"{type(error).__name__}: {error}".replace("\n", " "))
         raise UsageError(f"{shortened(str(file), WIDEST_PLACE)}: is damaged ({what}); {AGAIN}") from None
-
-
-def _histories(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Residuals of every iteration by stage."""
-    by_stage: dict[str, list[dict[str, float]]] = {}
-    for row in rows:
-        residuals = {key: value for key, value in row.items() if key not in ("stage", "pass")}
-        by_stage.setdefault(row["stage"], []).append(residuals)
-    return [{"stage": stage, "iterations": len(own), "residuals": own} for stage, own in by_stage.items()]
 
 
 # failure.json: what a run without convergence leaves to look at.

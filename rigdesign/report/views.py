@@ -7,6 +7,8 @@ from typing import Any
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.report.numbers import unit_text
 from rigdesign.results.check import STATUSES, Check
+from rigdesign.results.loads import ModeCrossing
+from rigdesign.results.quantity import value_in_unit
 from rigdesign.results.result import RunResult
 from rigdesign.results.thermal import LossRow
 
@@ -135,13 +137,14 @@ def loss_table(losses: Sequence[LossRow]) -> tuple[list[str], list[tuple[str, li
 
 
 def crossing_table(
-    crossings: list[dict[str, Any]], keys: Sequence[str]
+    crossings: Sequence[ModeCrossing], names: Sequence[str]
 ) -> tuple[list[Any], list[tuple[list[Any], list[Any]]]]:
-    """Harmonics, and (values of ``keys``, speed by harmonic) of every natural frequency."""
-    harmonics = sorted({item["harmonic"] for item in crossings})
+    """Harmonics, and (values of ``names``, speed by harmonic [rpm]) of every natural frequency."""
+    harmonics = sorted({item.harmonic for item in crossings})
     speeds: dict[tuple[Any, ...], dict[Any, float]] = {}
     for item in crossings:
-        speeds.setdefault(tuple(item[key] for key in keys), {})[item["harmonic"]] = item["speed_rpm"]
+        by_harmonic = speeds.setdefault(tuple(value_in_unit(item, name) for name in names), {})
+        by_harmonic[item.harmonic] = value_in_unit(item, "speed")
     return harmonics, [(list(key), [found.get(k) for k in harmonics]) for key, found in speeds.items()]
 
 

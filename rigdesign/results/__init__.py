@@ -1,1 +1,1 @@
-"""What a run finds and returns: immutable records in SI, and the rows of results.json made of them (`rows`)."""
+"""What a run returns: immutable records in SI whose fields say their units; JSON, tables and data frames of them."""

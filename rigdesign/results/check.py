@@ -103,3 +103,24 @@ class Checks(list[Check]):
             near = get_close_matches(key, [check.id for check in self], n=3, cutoff=0.4)
             raise KeyError(f"no check {key!r}; the nearest are {', '.join(near) or 'none'}")
         return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class HandCalculation:
+    """A number that an engineer can redo on paper, in its unit beside the computed one."""
+
+    quantity: str
+    computed: float
+    by_hand: float
+    unit: str
+    formula: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """A warning of the tool's own: a result, never a Python warning."""
+
+    id: str
+    text: str
+    checks: tuple[str, ...] = ()
+    """Ids of the checks that rest on what is outside of the range of its law; ``*`` stands for any characters."""

@@ -5,10 +5,25 @@ from typing import Any
 
 from rigdesign.base.output_folder import file_stem
 from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics, RampHistory
+from rigdesign.results.lateral import LateralVibration
+from rigdesign.results.loads import EventRecord
+from rigdesign.results.quantity import value_in_unit
 from rigdesign.results.thermal import ExpansionResult, OilPowerCurve, TransientCurve, TransientResult
+from rigdesign.results.vibration import Waterfall
 
 Columns = dict[str, list[Any]]
 """Values of one length by ``quantity [unit]``."""
+SHARES = {
+    "rolling angle of the pinion [deg]": "angle",
+    "share [1]": "share",
+    "share quasi-static [1]": "static_share",
+    "force over mean [1]": "force",
+}
+LINE_LOADS = {
+    "position from mid-face [mm]": "face",
+    "line load [N/mm]": "line_load",
+    "line load quasi-static [N/mm]": "static_line_load",
+}
 
 
 def curves_of(
@@ -67,6 +82,8 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
                     "quasi-static [N/mm2]": history.quasi_static_MPa,
                 },
             )
+        if gearbox.loaded_contact is not None:
+            yield file_stem("contact_pattern", name), _contact_pattern(gearbox.loaded_contact["pattern"])
     for turn in dynamics.tooth_histories:
         yield (
             file_stem("tooth_history", turn.gear),
@@ -81,32 +98,17 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
     if dynamics.campbell is not None:
         yield "campbell", _campbell(dynamics.campbell)
     for spectrum in dynamics.spectra:
-        if spectrum["order"]:
+        if spectrum.order:
             yield (
-                file_stem("spectrum", spectrum["gearbox"], spectrum["stage"]),
-                {"order of the pinion [1]": spectrum["order"], "amplitude [Nm]": spectrum["amplitude_Nm"]},
+                file_stem("spectrum", spectrum.mesh, spectrum.stage),
+                _of(spectrum, {"order of the pinion [1]": "order", "amplitude [Nm]": "amplitude"}),
             )
     for shared in dynamics.pair_shares:
-        yield (
-            file_stem("pair_share", shared["gearbox"], shared["stage"]),
-            {
-                "rolling angle of the pinion [deg]": shared["rolling_angle_deg"],
-                "share [1]": shared["share"],
-                "share quasi-static [1]": shared["share_quasi_static"],
-                "force over mean [1]": shared["force_over_mean"],
-            },
-        )
-        if shared["face_mm"]:
-            yield (
-                file_stem("line_load", shared["gearbox"], shared["stage"]),
-                {
-                    "position from mid-face [mm]": shared["face_mm"],
-                    "line load [N/mm]": shared["line_load_N_mm"],
-                    "line load quasi-static [N/mm]": shared["line_load_quasi_static_N_mm"],
-                },
-            )
+        yield file_stem("pair_share", shared.mesh, shared.stage), _of(shared, SHARES)
+        if shared.face:
+            yield file_stem("line_load", shared.mesh, shared.stage), _of(shared, LINE_LOADS)
     for waterfall in dynamics.waterfalls:
-        yield file_stem("waterfall", waterfall["gearbox"], waterfall["stage"]), _waterfall(waterfall)
+        yield file_stem("waterfall", waterfall.mesh, waterfall.stage), _waterfall(waterfall)
     if dynamics.dynamic_root is not None and dynamics.dynamic_root["curves"]:
         yield "dynamic_root_stress", _dynamic_root(dynamics.dynamic_root["curves"])
     if dynamics.section_torques is not None:
@@ -114,9 +116,10 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
 
 
 def _dynamic_factor(gearbox: GearboxDynamics) -> Columns:
-    """K_V(n): the curves of all torques below each other, distinguished by the last column."""
+    """K_V(n): the curves of all torques below each other, distinguished by their column."""
     header = (
-        "speed [rpm]", "max/mean [1]", "half peak-to-peak [1]", "ISO 6336-1 method B [1]", "method", "torque",
+        "speed [rpm]", "max/mean [1]", "half peak-to-peak [1]", "ISO 6336-1 method B [1]", "method", "torque", "motion",
+        "other branch [1]",
     )  # fmt: skip
     curves = {gearbox.torque: gearbox.dynamic_factor, **gearbox.dynamic_factor_at}
     return _columns(
@@ -124,12 +127,23 @@ def _dynamic_factor(gearbox: GearboxDynamics) -> Columns:
         (
             (
                 point.speed_rpm, point.simulated, point.simulated_half_peak_to_peak,
-                point.iso_6336_1_method_b, point.method, torque,
+                point.iso_6336_1_method_b, point.method, torque, point.motion, point.other_branch,
             )
             for torque, points in curves.items()
             for point in points
         ),
     )  # fmt: skip
+
+
+def _contact_pattern(pattern: Mapping[str, Any]) -> Columns:
+    """Pressure on the flank of the pinion, a row for every point."""
+    face, angles = pattern["face_mm"], pattern["rolling_angle_deg"]
+    return {
+        "rolling angle [deg]": [angle for row in angles for angle in row],
+        "position from mid-face [mm]": [place for _ in angles for place in face],
+        "pressure [N/mm2]": [pressure for row in pattern["pressure_MPa"] for pressure in row],
+        "at a tip edge": [edge for row in pattern["edge"] for edge in row],
+    }
 
 
 def _ramp(ramp: RampHistory) -> Columns:
@@ -158,10 +172,16 @@ def _campbell(campbell: Mapping[str, Any]) -> Columns:
     return columns
 
 
-def _waterfall(waterfall: Mapping[str, Any]) -> Columns:
+def _of(record: object, names: Mapping[str, str]) -> Columns:
+    """Columns of a record whose values are lists: name by header."""
+    return {header: list(value_in_unit(record, name)) for header, name in names.items()}
+
+
+def _waterfall(waterfall: Waterfall) -> Columns:
     """A column for every frequency, a row for every speed."""
-    columns: Columns = {"pinion speed [rpm]": list(waterfall["pinion_speed_rpm"])}
-    for frequency, values in zip(waterfall["frequency_Hz"], zip(*waterfall["amplitude_Nm"]), strict=True):
+    columns = _of(waterfall, {"pinion speed [rpm]": "speed"})
+    amplitudes = zip(*value_in_unit(waterfall, "amplitude"), strict=True)
+    for frequency, values in zip(waterfall.frequency, amplitudes, strict=True):
         columns[f"amplitude at {frequency:.1f} Hz [Nm]"] = list(values)
     return columns
 
@@ -234,12 +254,27 @@ def _quantity_and_unit(key: str) -> tuple[str, str]:
     return (quantity, unit) if unit in ("mrad", "um", "mm") else (key, "1")
 
 
-def lateral_curves(lateral: Mapping[str, Any] | None) -> dict[str, Columns]:
+def event_curves(events: Iterable[EventRecord]) -> dict[str, Columns]:
+    """Torques of every event in envelope windows."""
+    return {
+        file_stem("event", event.name): {
+            "time [s]": event.time,
+            **{
+                f"{curve.place} {curve.quantity} {bound} [Nm]": values
+                for curve in event.curves
+                for bound, values in (("least", curve.least), ("greatest", curve.greatest))
+            },
+        }
+        for event in events
+        if event.time
+    }
+
+
+def lateral_curves(lateral: LateralVibration | None) -> dict[str, Columns]:
     """Orbit of every bearing over speed, by header; nothing for shafts that only twist."""
     if lateral is None:
         return {}
-    curve = lateral["curve"]
-    columns: Columns = {"speed [rpm]": curve["speed_rpm"]}
-    for bearing in curve["bearings"]:
-        columns[f"orbit {bearing['bearing']} [um]"] = bearing["orbit_um"]
+    columns: Columns = {"speed [rpm]": list(value_in_unit(lateral.curve, "speed"))}
+    for bearing in lateral.curve.bearings:
+        columns[f"orbit {bearing.bearing} [um]"] = list(value_in_unit(bearing, "orbit"))
     return {"whirl": columns}

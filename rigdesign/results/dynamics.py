@@ -1,14 +1,26 @@
 """Dynamic results of a run, as they stand in results.json."""
 
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Annotated, Any
 
 from rigdesign.results.check import Role
-
-StressSource = Literal["finite-element influence numbers", "ISO 6336-3 form and stress correction factors"]
-FROM_INFLUENCE: StressSource = "finite-element influence numbers"
-FROM_FACTORS: StressSource = "ISO 6336-3 form and stress correction factors"
-"""Where the root stress per tooth force comes from."""
+from rigdesign.results.loads import (
+    ContactLoss,
+    HeldBracing,
+    JointDamping,
+    ListedMode,
+    MeshResonance,
+    ModeCrossing,
+    PressFitCapacity,
+    RootStressRatio,
+    SplineStress,
+    StageLoad,
+    TorqueBalance,
+    UnsolvedSpeed,
+)
+from rigdesign.results.quantity import Quantity, Records
+from rigdesign.results.teeth import PairShare
+from rigdesign.results.vibration import HeldSpectrum, Waterfall
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,23 +90,20 @@ class GearboxDynamics:
     dynamic_factor: list[DynamicFactorPoint]
     dynamic_factor_at: dict[str, list[DynamicFactorPoint]]
     """The same at the other torques at which the schedule holds or changes the speed (``90 Nm``)."""
-    stage_loads: list[dict[str, Any]]
-    """Time run, per stage that turns under torque: {stage, dynamic_factor, speed_rpm, mean_Nm, peak_Nm, least_Nm,
-    least_share, least_share_at_rpm, least_share_mean_Nm}."""
+    stage_loads: Records[StageLoad]
+    """Of the time run, for every stage that turns under torque."""
     dynamic_torque_peak_Nm: float  # noqa: N815
     """Highest of the time run and the periodic responses of the held stages."""
     iso_factors: dict[str, float | str]
     """Every factor of ISO 6336-1 method B at the test speed, by its printed symbol."""
-    lift_off: list[dict[str, Any]]
-    """{stage, start_s, end_s, share} intervals without tooth contact."""
-    resonances: list[dict[str, Any]]
-    """{torque, mode, frequency_Hz, harmonic, speed_rpm, dynamic_factor, force_share, amplification, at_end,
-    dangerous}; at_end: the torque still rises at the highest speed computed."""
-    unsolved: list[dict[str, Any]]
-    """{curve, speed_rpm, reason}: speeds at which a curve has no point because no periodic response was found."""
+    lift_off: Records[ContactLoss]
+    """Of the time run."""
+    resonances: Records[MeshResonance]
+    """Of all curves."""
+    unsolved: Records[UnsolvedSpeed]
     root_stress: list[RootStressHistory]
-    root_stress_factor: list[dict[str, float]]
-    """{speed_rpm, pinion, wheel}: max sigma_F dynamic / quasi-static, to compare with K_V(n)."""
+    root_stress_factor: Records[RootStressRatio]
+    """Over the speeds of ``dynamic_factor``, to compare with K_V(n)."""
     geometry: dict[str, float | str]
     """Gear data, as drawn and warm, for the report."""
     flank_ratings: list[dict[str, Any]] = field(default_factory=list)
@@ -111,6 +120,11 @@ class GearboxDynamics:
     root_stress: {pinion, wheel:
     {rolling_angle_deg, highest_MPa, mid_face_MPa, largest_MPa, at_face_mm, stress_ratio}}, strain_gauges: rows
     of the gauges}; None where the teeth are analytic or carry no torque."""
+
+    @property
+    def largest_dynamic_factor(self) -> Annotated[float | None, Quantity()]:
+        """Of ``dynamic_factor``, simulated; None without a point."""
+        return max((point.simulated for point in self.dynamic_factor), default=None)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,24 +146,18 @@ class DynamicsResult:
 
     gearboxes: dict[str, GearboxDynamics]
     """By gearbox; by ``gearbox.mesh`` where a gearbox has several meshes."""
-    natural_frequencies: list[dict[str, Any]]
-    """{mode, frequency_Hz, damping_ratio, shape, largest_at}: modes of the closed loop, meshes at their mean
-    stiffness; shape: parts that hold the strain energy; largest_at: shaft and place that oscillate most; mode 0 is
-    rigid rotation."""
-    damping_audit: list[dict[str, Any]]
-    """{joint, damping_ratio, corner_frequency_Hz, warning}."""
+    natural_frequencies: Records[ListedMode]
+    damping_audit: Records[JointDamping]
     sampling: dict[str, float]
-    bracing: list[dict[str, Any]]
-    """Per stage: {stage, mode, torque_Nm, twist_deg, axial_shift_mm, half_gear_rotation_deg,
-    actuator_force_N, torque_cold_Nm, torque_hot_Nm}."""
+    bracing: Records[HeldBracing]
+    """Of every held stage."""
     ramp: RampHistory | None
-    torque_balance: list[dict[str, Any]]
+    torque_balance: Records[TorqueBalance]
+    """Of every held stage."""
     tooth_histories: list[ToothTurnHistory] = field(default_factory=list)
     """Of every loaded gear at the held stage that speaks for the rig."""
-    loop_crossings: list[dict[str, Any]] = field(default_factory=list)
-    """{kind, order_of, mode, shape, frequency_Hz, damping_ratio, harmonic, speed_rpm, gain}: mesh orders that meet
-    a mode of the closed loop which the mesh excites, and shaft orders that meet one; order_of: gearbox or shaft,
-    speed_rpm that of its pinion or its own."""
+    loop_crossings: Records[ModeCrossing] = field(default_factory=Records)
+    """Mesh orders that meet a mode of the closed loop which the mesh excites, and shaft orders that meet one."""
     campbell: dict[str, Any] | None = None
     """Modes of the closed loop over speed, bearings as they run there: {speed_rpm (of the first pinion), modes:
     [{mode, shape, driven_by, frequency_Hz, damping_ratio, gain: {gearbox}}], orders: [{kind, of, harmonic,
@@ -173,20 +181,14 @@ class DynamicsResult:
     high_rpm, bands: [{low_rpm, high_rpm, resonances: [{kind, where, speed_rpm, share, low_rpm, high_rpm}]}],
     safe: [{low_rpm, high_rpm}], stages: [{stage, kind, speed_rpm, computed, band, nearest_safe_rpm}], ramp: [{step,
     action, speed_rpm, torque_Nm, reason}], highest: {speed_rpm, kind: share over speed}}."""
-    waterfalls: list[dict[str, Any]] = field(default_factory=list)
-    """Spectrum of the mesh torque over the run-up, from the time run: {gearbox, stage, pinion_speed_rpm,
-    frequency_Hz, amplitude_Nm: rows over speed of columns over frequency, teeth}; empty where no torque is kept."""
-    spectra: list[dict[str, Any]] = field(default_factory=list)
-    """At the held stages: {gearbox, stage, pinion_speed_rpm, mean_Nm, teeth, order, amplitude_Nm: of the time run
-    over the order of the pinion; mesh_harmonic_order, mesh_harmonic_amplitude_Nm: of the periodic response}."""
-    pair_shares: list[dict[str, Any]] = field(default_factory=list)
-    """Load on a tooth pair at the held stages: {gearbox, stage, rolling_angle_deg (of the pinion), share (of the mesh
-    force at that moment, in motion), share_quasi_static, force_over_mean}."""
-    press_fits: list[dict[str, Any]] = field(default_factory=list)
-    """Of every gear with an interference at every torque that its check counts, of held stages, time run and events:
-    {gear, where, stage (whose temperatures count), interference_um, interference_hot_um, gear_degC, shaft_degC,
-    pressure_at_rest_MPa, pressure_MPa, friction, slip_torque_Nm, peak_torque_Nm, safety (None
-    without torque)}."""
-    splines: list[dict[str, Any]] = field(default_factory=list)
+    waterfalls: Records[Waterfall] = field(default_factory=Records)
+    """Spectrum of the mesh torque over run-up and run-down, from the time run; empty where no torque is kept."""
+    spectra: Records[HeldSpectrum] = field(default_factory=Records)
+    """At the held stages."""
+    pair_shares: Records[PairShare] = field(default_factory=Records)
+    """Load on a tooth pair at the held stages."""
+    press_fits: Records[PressFitCapacity] = field(default_factory=Records)
+    """Of every gear with an interference at every torque that its check counts, of held stages, time run and events."""
+    splines: Records[SplineStress] = field(default_factory=Records)
     """Of every gear whose spline states its toothing at every torque that its checks count, each stress with an
-    allowable one: {gear, where, kind, torque_Nm, stress_MPa, allowable_MPa, safety}."""
+    allowable one."""

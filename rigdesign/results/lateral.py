@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from rigdesign.results.quantity import (
+    Degrees,
+    NewtonMetres,
+    Newtons,
+    Quantity,
+    Revolutions,
+    Watts,
+)
 
 if TYPE_CHECKING:
     from dynamics.rotor.damped_modes import RigMode
@@ -17,6 +26,9 @@ Torque = Literal["held", "lost"]
 """Whether the bearings carry the torque of the stage, or the weight alone after the loop has lost it at speed."""
 
 
+Micrometres = Annotated[float | None, Quantity("um")]
+
+
 @dataclass(frozen=True, kw_only=True)
 class BearingWhirl:
     """Motion and force once a turn in one bearing."""
@@ -24,24 +36,23 @@ class BearingWhirl:
     bearing: str
     """``gearbox.bearing``."""
     shaft: str
-    orbits: Mapping[str, float]
-    """Larger half axis of the orbit by the shaft line that shakes it [m]."""
-    minor: float
-    """Smaller half axis of the largest of them, negative for backward whirl [m]."""
-    clearance: float | None
-    """Of an oil film, diametral, as it runs [m]; None for rolling elements."""
-    force: float
-    """Largest force once a turn, those of all lines added [N]."""
-    static_load: float
-    """[N]"""
+    orbits: Annotated[Mapping[str, float], Quantity("um")]
+    """Larger half axis of the orbit by the shaft line that shakes it."""
+    minor: Annotated[float, Quantity("um")]
+    """Smaller half axis of the largest of them, negative for backward whirl."""
+    clearance: Micrometres
+    """Of an oil film, diametral, as it runs; None for rolling elements."""
+    force: Newtons
+    """Largest force once a turn, those of all lines added."""
+    static_load: Newtons
 
     @property
-    def amplitude(self) -> float:
-        """Largest distance from the mean position, the orbits of all lines added in the worst phase [m]."""
+    def amplitude(self) -> Annotated[float, Quantity("um", "orbit")]:
+        """Largest distance from the mean position, the orbits of all lines added in the worst phase."""
         return sum(self.orbits.values())
 
     @property
-    def clearance_share(self) -> float | None:
+    def clearance_share(self) -> Annotated[float | None, Quantity(label="share")]:
         """Peak-to-peak motion over the diametral clearance."""
         return None if not self.clearance else 2.0 * self.amplitude / self.clearance
 
@@ -52,8 +63,8 @@ class SealWhirl:
 
     seal: str
     shaft: str
-    amplitude: float
-    """Largest distance from the mean position, of all lines [m]."""
+    amplitude: Annotated[float, Quantity("um", "orbit")]
+    """Largest distance from the mean position, of all lines."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,10 +73,10 @@ class MeshWhirl:
 
     mesh: str
     """``gearbox.mesh``."""
-    forces: Mapping[str, float]
-    """Amplitude along the line of action by the shaft line that makes it [N]."""
-    mean: float
-    """Force of the mean torque [N]."""
+    forces: Annotated[Mapping[str, float], Quantity("N")]
+    """Amplitude along the line of action by the shaft line that makes it."""
+    mean: Newtons
+    """Force of the mean torque."""
 
     def share(self, lines: Iterable[str] | None = None) -> float:
         """Of the mean force, some lines or all added in the worst phase; infinite without a torque."""
@@ -77,14 +88,15 @@ class MeshWhirl:
 class Separation:
     """A mode next to the speed of its shaft or to an excitation of it."""
 
-    mode: RigMode
-    speed: float
-    """Of the shaft at the held stage [rad/s]."""
+    mode: int
+    """Its number among the modes of the stage, from 0."""
+    speed: Revolutions
+    """Of the shaft at the held stage."""
     harmonic: int
     margin: float
-    """Distance of the mode from harmonic times speed, over that [-]; negative for a mode below."""
+    """Distance of the mode from harmonic times speed, over that; negative for a mode below."""
     required: float
-    """Least distance [-]; 0 where the mode is critically damped."""
+    """Least distance; 0 where the mode is critically damped."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,8 +105,8 @@ class StageLateral:
 
     stage: str
     torque: Torque
-    speed: float
-    """Where the case counts it [rad/s]."""
+    speed: Revolutions
+    """Where the case counts it."""
     modes: tuple[RigMode, ...]
     bearings: tuple[BearingWhirl, ...] = ()
     seals: tuple[SealWhirl, ...] = ()
@@ -103,30 +115,47 @@ class StageLateral:
     """Lateral modes against once a turn."""
     torsional: tuple[Separation, ...] = ()
     """Torsional modes against once and twice a turn, the nearest first."""
-    highest_turn: float = 0.0
-    """Of the fastest shaft [Hz]."""
+    highest_turn: Annotated[float, Quantity("Hz")] = 0.0
+    """Of the fastest shaft."""
 
     def as_rigid_body(self, mode: RigMode) -> bool:
         """Whether shafts sway undeformed in the play of unloaded bearings, slower than anything that turns drives."""
         return mode.elastic_share < RIGID and mode.frequency < SWAYING * self.highest_turn
 
+    def separation_of(self, mode: int) -> Separation | None:
+        """The nearest of a mode; None where nothing excites it."""
+        return next((near for near in (*self.torsional, *self.separations) if near.mode == mode), None)
+
 
 @dataclass(frozen=True, kw_only=True)
-class SpeedWhirl:
-    """Bearings at one speed of the curve [rad/s]."""
+class BearingOrbit:
+    """Motion once a turn in one bearing over speed."""
 
-    speed: float
-    bearings: tuple[BearingWhirl, ...]
+    bearing: str
+    """``gearbox.bearing``."""
+    orbit: Annotated[tuple[float, ...], Quantity("um")]
+    """(s,) as `BearingWhirl.amplitude`."""
+    clearance: Micrometres
+    """As of `BearingWhirl`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class WhirlCurve:
+    """Orbits of the bearings over speed."""
+
+    speed: Annotated[tuple[float, ...], Quantity("rpm")] = ()
+    """(s,)"""
+    bearings: tuple[BearingOrbit, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
 class SeatStiffness:
-    """Elastic seat of one bearing: force over its travel with that bearing alone loaded [N/m]."""
+    """Elastic seat of one bearing: force over its travel with that bearing alone loaded."""
 
     bearing: str
-    lateral: float
-    vertical: float
-    axial: float | None
+    lateral: Annotated[float, Quantity("N/um")]
+    vertical: Annotated[float, Quantity("N/um")]
+    axial: Annotated[float | None, Quantity("N/um")]
     """None of a seat that stands still along the shaft."""
 
 
@@ -135,7 +164,7 @@ class LateralVibration:
     """All held stages, and the whirl over speed under torque and temperatures of the one that speaks for the rig."""
 
     stages: tuple[StageLateral, ...]
-    curve: tuple[SpeedWhirl, ...]
+    curve: WhirlCurve = WhirlCurve()
     seats: tuple[SeatStiffness, ...] = ()
     """Of housings condensed to their seats, and of supports that the case states; rigid ones are left out."""
 
@@ -151,45 +180,39 @@ class LateralVibration:
 class RollingBearingRecord:
     """One rolling bearing at one held stage."""
 
-    name: str
+    bearing: str
     """``gearbox.bearing``."""
     stage: str
     designation: str
-    radial_load: float
-    """[N]"""
-    axial_load: float
-    """Inside the bearing, the induced one included [N]."""
-    speed: float
-    """[rad/s]"""
-    torques: tuple[float, float, float, float]
-    """Rolling, sliding, seals, drag [N m]."""
-    power: float
-    """Friction by its law [W]."""
-    temperature: float
-    """Of rolling elements and lubricant [K]."""
-    inner_ring: float
-    """[K]"""
-    outer_ring: float
-    """[K]"""
-    heat_to_shaft: float
-    """[W]"""
-    heat_to_housing: float
-    """[W]"""
-    clearance: float
-    """Radial internal clearance as it runs, on the diameter; negative is preload [m]."""
-    basic_life: float
-    """L_10h [h]; infinite at rest."""
-    modified_life: float
-    """L_nmh [h]; infinite at rest."""
-    static_safety: float
-    viscosity_ratio: float
+    radial_load: Newtons
+    axial_load: Newtons
+    """Inside the bearing, the induced one included."""
+    minimum_load: Newtons
+    speed: Revolutions
     speed_utilisation: float
     """Speed over the limiting speed."""
-    minimum_load: float
-    """[N]"""
-    radial_stiffness: float
-    """[N/m]"""
-    axial_stiffness: float
-    """[N/m]"""
-    tilting_stiffness: float
-    """In the plane of the radial load [N m/rad]."""
+    rolling_torque: NewtonMetres
+    sliding_torque: NewtonMetres
+    seal_torque: NewtonMetres
+    drag_torque: NewtonMetres
+    friction: Watts
+    """By its law."""
+    temperature: Degrees
+    """Of rolling elements and lubricant."""
+    inner_ring: Degrees
+    outer_ring: Degrees
+    heat_to_shaft: Watts
+    heat_to_housing: Watts
+    operating_clearance: Annotated[float, Quantity("um")]
+    """Radial internal clearance as it runs, on the diameter; negative is preload."""
+    basic_life: Annotated[float | None, Quantity("h")]
+    """L_10h; None without end, at rest."""
+    modified_life: Annotated[float | None, Quantity("h")]
+    """L_nmh; None without end, at rest."""
+    static_safety: float | None
+    """None without load."""
+    viscosity_ratio: float
+    radial_stiffness: Annotated[float, Quantity("N/um")]
+    axial_stiffness: Annotated[float, Quantity("N/um")]
+    tilting_stiffness: Annotated[float, Quantity("kN m/rad")]
+    """In the plane of the radial load."""

@@ -5,15 +5,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Annotated, Literal, Protocol
 
 from rigdesign.results.check import Role
-from rigdesign.results.dynamics import FROM_FACTORS, StressSource
+from rigdesign.results.quantity import (
+    Degrees,
+    Hertz,
+    Megapascals,
+    NewtonMetres,
+    Newtons,
+    Quantity,
+    Revolutions,
+    Seconds,
+    Watts,
+)
 
 if TYPE_CHECKING:
     from dynamics.rotor.bracing import BracingDrift
     from dynamics.rotor.torsional_modes import DampingRecord, LoopMode
     from rigdesign.results.teeth import ToothHistory
+
+
+StressSource = Literal["finite-element influence numbers", "ISO 6336-3 form and stress correction factors"]
+FROM_INFLUENCE: StressSource = "finite-element influence numbers"
+FROM_FACTORS: StressSource = "ISO 6336-3 form and stress correction factors"
+"""Where the root stress per tooth force comes from."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,20 +39,18 @@ class StageLoad:
     stage: str
     dynamic_factor: float
     """Highest torque over the mean of its window."""
-    speed: float
-    """Where the dynamic factor occurs [rad/s]."""
-    mean: float
-    """Mean torque there [N m]."""
-    peak: float
-    """Highest torque of the stage [N m]."""
-    least: float
-    """Lowest torque of the stage [N m]."""
+    speed: Revolutions
+    """Where the dynamic factor occurs."""
+    mean: NewtonMetres
+    """Mean torque there."""
+    peak: NewtonMetres
+    """Highest torque of the stage."""
+    least: NewtonMetres
+    """Lowest torque of the stage."""
     least_share: float
     """Lowest torque over the mean of its window; below zero where the other flank is hit."""
-    least_share_speed: float
-    """[rad/s]"""
-    least_share_mean: float
-    """[N m]"""
+    least_share_speed: Annotated[float, Quantity("rpm", "least share at")]
+    least_share_mean: NewtonMetres
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,14 +58,11 @@ class ContactLoss:
     """An interval of the time run in which a mesh kept losing contact."""
 
     stage: str
-    start: float
-    """[s]"""
-    end: float
-    """[s]"""
+    start: Seconds
+    end: Seconds
     share: float
     """Of the time without contact."""
-    longest_gap: float
-    """[s]"""
+    longest_gap: Annotated[float, Quantity("ms")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,11 +72,9 @@ class MeshResonance:
     torque: str
     """Torque of the curve where the case counts it, in words: ``180 Nm``."""
     mode: str
-    frequency: float
-    """[Hz]"""
+    frequency: Hertz
     harmonic: int
-    speed: float
-    """[rad/s]"""
+    speed: Revolutions
     dynamic_factor: float
     force_share: float
     amplification: float
@@ -85,13 +94,71 @@ class ModeCrossing:
     """Label of the mesh, or shaft."""
     mode: int
     shape: str
-    frequency: float
-    """[Hz]"""
+    frequency: Hertz
     damping_ratio: float
     harmonic: int
-    speed: float
-    """Of the pinion of the mesh, or of the shaft [rad/s]."""
+    speed: Revolutions
+    """Of the pinion of the mesh, or of the shaft."""
     gain: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class ListedMode:
+    """A mode of the closed loop, meshes at their mean stiffness."""
+
+    mode: int
+    """1 for the lowest that oscillates, 0 for rigid rotation."""
+    frequency: Hertz
+    damping_ratio: float
+    shape: str
+    """Parts that hold the strain energy."""
+    largest_at: str
+    """Shaft and place that oscillate most."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointDamping:
+    """Damping of one joint or mesh."""
+
+    joint: str
+    kind: str
+    damping_ratio: float
+    corner_frequency: Annotated[float | None, Quantity("Hz")]
+    """None without damping."""
+    own_frequency: Hertz
+    warning: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldBracing:
+    """The bracing of one held stage, warm and as drawn."""
+
+    stage: str
+    mode: str
+    torque: NewtonMetres
+    twist: Annotated[float, Quantity("deg")]
+    axial_shift: Annotated[float, Quantity("mm")]
+    half_gear_rotation: Annotated[float, Quantity("deg")]
+    actuator_force: Newtons
+    spline_friction: Newtons
+    loop_stiffness: Annotated[float, Quantity("kN m/rad")]
+    torque_as_drawn: NewtonMetres
+    axial_shift_as_drawn: Annotated[float, Quantity("mm")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueBalance:
+    """Power of the drive against the losses of one held stage."""
+
+    stage: str
+    drive_torque: NewtonMetres
+    drive_power: Watts
+    losses: Watts
+
+    @property
+    def joints(self) -> Watts:
+        """What joints damp: the rest."""
+        return self.drive_power - self.losses
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,8 +166,7 @@ class UnsolvedSpeed:
     """A speed at which a curve has no point because no periodic response was found."""
 
     curve: str
-    speed: float
-    """[rad/s]"""
+    speed: Revolutions
     reason: str
 
 
@@ -124,8 +190,7 @@ class RootStressPath:
 class RootStressRatio:
     """Highest dynamic over highest quasi-static root stress at one speed."""
 
-    speed: float
-    """[rad/s]"""
+    speed: Revolutions
     pinion: float
     wheel: float
 
@@ -221,27 +286,21 @@ class PressFitCapacity:
     """Held stage whose temperatures count."""
     where: str
     """Stage or event of the torque, in words."""
-    interference: float
-    """Effective and least, on the diameter, at rest and 20 degC [m]."""
-    interference_hot: float
-    """[m]"""
-    gear_temperature: float
-    """[K]"""
-    shaft_temperature: float
-    """[K]"""
-    pressure_at_rest: float
-    """[Pa]"""
-    pressure: float
-    """Hot and at speed [Pa]; 0 where the seat is loose."""
+    interference: Annotated[float, Quantity("um")]
+    """Effective and least, on the diameter, at rest and 20 degC."""
+    interference_hot: Annotated[float, Quantity("um")]
+    gear_temperature: Degrees
+    shaft_temperature: Degrees
+    pressure_at_rest: Megapascals
+    pressure: Megapascals
+    """Hot and at speed; 0 where the seat is loose."""
     friction: float
-    slip_torque: float
-    """[N m]"""
-    peak_torque: float
-    """[N m]"""
+    slip_torque: NewtonMetres
+    peak_torque: NewtonMetres
 
     @property
-    def safety(self) -> float | None:
-        """Slip torque over peak torque [-]; None without torque."""
+    def safety(self) -> Annotated[float | None, Quantity()]:
+        """Slip torque over peak torque; None without torque."""
         return self.slip_torque / self.peak_torque if self.peak_torque > 0.0 else None
 
 
@@ -254,24 +313,27 @@ class SplineStress:
     kind: SplineStressKind
     where: str
     """Stage or event of the torque, in words."""
-    torque: float
-    """[N m]"""
-    stress: float
-    """[Pa]"""
-    allowable: float
-    """As the case states it [Pa]."""
+    torque: NewtonMetres
+    stress: Megapascals
+    allowable: Megapascals
+    """As the case states it."""
 
     @property
-    def safety(self) -> float | None:
-        """Allowable over stress [-]; None without stress."""
+    def safety(self) -> Annotated[float | None, Quantity()]:
+        """Allowable over stress; None without stress."""
         return self.allowable / self.stress if self.stress > 0.0 else None
 
 
 # Loads of the rig in an event: SI records.
 
-Quantity = Literal["coupling torque", "shaft torque", "seat torque", "mesh torque", "bearing force"]
+Load = Literal["coupling torque", "shaft torque", "seat torque", "mesh torque", "bearing force"]
 NOT_WITHIN = "not within"
 """How the reason of a check begins whose value is the time followed without the event it waits for: a lower bound."""
+
+
+LEAST_SHARE = 0.05
+"""Part of a peak below which what was there before is no measure of it."""
+ShearStress = Annotated[float | None, Quantity("MPa")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -283,27 +345,37 @@ class EventPeak:
     ``gearbox.bearing``."""
     part: str
     """The same, of a section its shaft."""
-    quantity: Quantity
+    quantity: Load
     before: float
     """Mean before the event."""
     peak: float
-    time: float
-    """From the instant of the event [s]."""
-    shear_stress: float | None = None
-    """Nominal torsional stress at the surface of a shaft under the peak [Pa]."""
+    time: Seconds
+    """From the instant of the event."""
+    shear_stress: ShearStress = None
+    """Nominal torsional stress at the surface of a shaft under the peak."""
+
+    @property
+    def unit(self) -> Annotated[str, Quantity()]:
+        """Of ``before`` and ``peak``."""
+        return "N" if self.quantity == "bearing force" else "N m"
+
+    @property
+    def factor(self) -> Annotated[float | None, Quantity()]:
+        """Peak over what was there before; None where that was next to nothing."""
+        return self.peak / abs(self.before) if abs(self.before) > LEAST_SHARE * self.peak else None
 
 
 @dataclass(frozen=True, kw_only=True)
 class PassingPeak:
-    """Largest amount of a torque at one place during run-down through the resonances [N m]."""
+    """Largest amount of a torque at one place during run-down through the resonances."""
 
     place: str
     part: str
-    quantity: Quantity
-    peak: float
-    speed: float
-    """Stated speed at which it is passed [rad/s]."""
-    shear_stress: float | None = None
+    quantity: Load
+    peak: NewtonMetres
+    speed: Revolutions
+    """Stated speed at which it is passed."""
+    shear_stress: ShearStress = None
     """As of `EventPeak`."""
 
 
@@ -313,50 +385,50 @@ class Reversal:
 
     mesh: str
     open_share: float
-    """Share of the time without contact [-]."""
-    other_flank: float
-    """Most torque on the flanks that carry nothing before [N m]."""
+    """Share of the time without contact."""
+    other_flank: NewtonMetres
+    """Most torque on the flanks that carry nothing before."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class EventCurve:
-    """Extremes of a torque in envelope windows [N m]."""
+    """Extremes of a torque in envelope windows."""
 
     place: str
-    quantity: Quantity
-    least: list[float] = field(repr=False)
-    greatest: list[float] = field(repr=False)
+    quantity: Load
+    least: Annotated[list[float], Quantity("N m")] = field(repr=False)
+    greatest: Annotated[list[float], Quantity("N m")] = field(repr=False)
 
 
 @dataclass(frozen=True, kw_only=True)
 class EventRecord:
-    """One event."""
+    """One event; what its kind does not have is None or empty."""
 
     name: str
     kind: str
-    speed: float
-    """Of the test gear's shaft as stated [rad/s]."""
-    torque: float
-    """As stated [N m]."""
+    speed: Revolutions
+    """Of the test gear's shaft as stated."""
+    torque: NewtonMetres
+    """As stated."""
     what: str
     """In words: teeth lost, brake torque."""
     peaks: tuple[EventPeak, ...] = ()
     passing: tuple[PassingPeak, ...] = ()
     """Of a stop, from the periodic responses over speed."""
     reversals: tuple[Reversal, ...] = ()
-    tripped: float | None = None
-    """Time until the limit of the monitor is crossed [s]."""
-    untripped: float | None = None
-    """Time for which a monitor was watched that never tripped [s]."""
-    standstill: float | None = None
-    """Time to standstill, from the trip or the stop on [s]."""
+    tripped: Annotated[float | None, Quantity("s")] = None
+    """Time until the limit of the monitor is crossed."""
+    untripped: Annotated[float | None, Quantity("s")] = None
+    """Time for which a monitor was watched that never tripped."""
+    standstill: Annotated[float | None, Quantity("s")] = None
+    """Time to standstill, from the trip or the stop on."""
     dynamic_factor: dict[str, float] = field(default_factory=dict)
     """K_V by mesh, of an overspeed."""
     resonance: str = ""
     """Nearest resonance of an overspeed, in words."""
     resonance_distance: float | None = None
-    """Its distance as a share of the speed [-]."""
-    time: list[float] = field(default_factory=list, repr=False)
-    """End of each envelope window of the curves [s]."""
+    """Its distance as a share of the speed."""
+    time: Annotated[list[float], Quantity("s")] = field(default_factory=list, repr=False)
+    """End of each envelope window of the curves."""
     curves: tuple[EventCurve, ...] = ()
     notes: tuple[str, ...] = ()

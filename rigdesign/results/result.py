@@ -1,18 +1,21 @@
 """What a run returns: immutable records, named as they stand in results.json."""
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from html import escape
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.base.errors import MissingLibraryError
 from rigdesign.case.assumptions import AssumptionRecord
-from rigdesign.case.provenance import InputRow
-from rigdesign.results.check import STATUSES, Checks, Status
-from rigdesign.results.curves import Columns, curves_of, lateral_curves
+from rigdesign.case.provenance import InputRow, MeasuredInput
+from rigdesign.results.check import STATUSES, Checks, Finding, HandCalculation, Status
+from rigdesign.results.curves import Columns, curves_of, event_curves, lateral_curves
 from rigdesign.results.dynamics import DynamicsResult
+from rigdesign.results.housing import CircuitBalance, CoolingBalance, RigHeat
+from rigdesign.results.lateral import LateralVibration, RollingBearingRecord
+from rigdesign.results.loads import EventRecord
+from rigdesign.results.quantity import Quantity, Records, to_dataframe
 from rigdesign.results.ranges import RangesResult
 from rigdesign.results.thermal import (
     ExpansionResult,
@@ -95,23 +98,25 @@ class MeshShift:
 
 
 @dataclass(frozen=True, kw_only=True)
+class IterationResidual:
+    """Largest changes in one iteration of the coupling loop."""
+
+    temperature: Annotated[float, Quantity("K")]
+    expansion: Annotated[float, Quantity("um")]
+    torque_relative: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class CouplingHistory:
     """Residuals of every iteration of the coupling loop of one stage."""
 
     stage: str
-    iterations: int
-    residuals: list[dict[str, float]]
-    """{temperature_K, growth_um, torque_relative} by iteration."""
+    residuals: tuple[IterationResidual, ...]
 
-
-@dataclass(frozen=True, kw_only=True)
-class Finding:
-    """A warning of the tool's own: a result, never a Python warning."""
-
-    id: str
-    text: str
-    checks: tuple[str, ...] = ()
-    """Ids of the checks that rest on what is outside of the range of its law; ``*`` stands for any characters."""
+    @property
+    def iterations(self) -> Annotated[int, Quantity()]:
+        """How many it took."""
+        return len(self.residuals)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -126,46 +131,29 @@ class RunResult:
     dynamics: DynamicsResult | None
     losses: list[LossRow]
     oil: list[OilRow]
-    events: list[dict[str, Any]] = field(default_factory=list)
-    """Per event of the case {name, kind, what, speed_rpm, torque_Nm, peaks, contact, time_to_trip_s,
-    time_to_standstill_s, dynamic_factor, resonance, resonance_distance, curves, notes}; peaks: {place, quantity, unit,
-    before, peak, factor, time_s}; contact: {mesh, open_share, other_flank_Nm}; curves: {time_s, torque: {place,
-    quantity, least, greatest}}."""
-    rolling_bearings: list[dict[str, Any]] = field(default_factory=list)
-    """Per rolling bearing and held stage {bearing, stage, designation, loads, friction torque by source, temperatures,
-    heat into the seats, operating_clearance_um, lives, safety, stiffness}; units in the keys."""
-    cooler: list[dict[str, float | str]]
-    """Per held stage {stage, losses_W, pump_W, heater_W, cooler_W, room_W, not_heat_W, open_W, flow_l_min}: losses of
-    the shafts, jets of the pump and heaters put in what cooler and room take out; losses that are no heat stand
-    apart."""
-    lateral: dict[str, Any] | None = None
-    """Shafts that bend: {stages: [{stage, torque, speed_rpm, modes: [{mode, family, shaft, frequency_Hz,
-    logarithmic_decrement, amplification, whirl, margin, required_margin, rigid_body}], bearings: [{bearing, shaft,
-    orbit_um, minor_um, clearance_um, share, force_N, static_load_N}], seals: [{seal, shaft, orbit_um}],
-    meshes: [{mesh, line, force_N, share}]}], seats: [{bearing, lateral_N_um, vertical_N_um, axial_N_um}],
-    curve: {speed_rpm, bearings: [{bearing, orbit_um, clearance_um}]}}; orbits are the larger half axis, those of all
-    lines added; torque is held or lost; seats are elastic ones; None for shafts that only twist."""
-    rig_heat: list[dict[str, Any]] = field(default_factory=list)
-    """Per held stage {stage, drive_power_W, mains_power_W, input_power_W, open_W, sources, room}; sources: {source,
-    kind, power_W, room_W, oil_W, water_W, stored_W, no_heat_W}; room: {temperature_degC, limit_degC, heat_W, by_air_W,
-    by_walls_W, air_flow_m3_h, needed_air_flow_m3_h}, None where the case states none. Of a case that states
-    `rig_heat`."""
-    oil_circuits: list[dict[str, Any]] = field(default_factory=list)
-    """Per oil circuit and held stage {circuit, stage, tank_degC, flow_l_min, heater_W, cooler_W, pump_W, machines_W,
-    room_W, open_W, lines, devices}; lines: {line, setpoint_degC, tolerance_K, supply_degC, drain_degC, back_degC,
-    flow_l_min, heat_W}; devices: {device, power_W, needed_W, capability_W}."""
+    events: Records[EventRecord] = field(default_factory=Records)
+    rolling_bearings: Records[RollingBearingRecord] = field(default_factory=Records)
+    """Of every held stage."""
+    cooler: Records[CoolingBalance]
+    """Of every held stage."""
+    lateral: LateralVibration | None = None
+    """None for shafts that only twist."""
+    rig_heat: Records[RigHeat] = field(default_factory=Records)
+    """Of every held stage, of a case that states `rig_heat`."""
+    oil_circuits: Records[CircuitBalance] = field(default_factory=Records)
+    """Of every held stage."""
     thermal: list[ThermalResult]
     expansion: list[ExpansionResult]
-    coupling: list[CouplingHistory]
+    coupling: Records[CouplingHistory]
     discretisation: list[DiscretisationRow] = field(default_factory=list)
     reference_shift: list[MeshShift] = field(default_factory=list)
     """At reference: every check that depends on a housing mesh, on the standard mesh and on the fine one."""
-    hand_checks: list[dict[str, Any]]
-    """{quantity, computed, by_hand, unit, formula}: a number an engineer can redo for each key result."""
+    hand_checks: Records[HandCalculation]
+    """A number an engineer can redo for each key result."""
     inputs: list[InputRow] = field(default_factory=list)
     """Every value the case states."""
     assumptions: list[AssumptionRecord]
-    overrides: list[dict[str, str]]
+    overrides: Records[MeasuredInput]
     not_modelled: list[str]
     warnings: list[Finding]
     timings_s: dict[str, float]
@@ -205,7 +193,11 @@ class RunResult:
     @property
     def columns(self) -> dict[str, Columns]:
         """Every curve of the run by name as lists by ``quantity [unit]``: what curves/*.csv holds."""
-        return curves_of(self.expansion, self.dynamics, self.transient) | lateral_curves(self.lateral)
+        return (
+            curves_of(self.expansion, self.dynamics, self.transient)
+            | event_curves(self.events)
+            | lateral_curves(self.lateral)
+        )
 
     @property
     def curves(self) -> dict[str, dict[str, NDArray[Any]]]:
@@ -223,11 +215,7 @@ class RunResult:
         MissingLibraryError
             pandas is not installed.
         """
-        try:
-            import pandas
-        except ImportError as error:
-            raise MissingLibraryError("to_dataframe needs pandas; run: pip install pandas") from error
-        return pandas.DataFrame([asdict(check) for check in self.checks]).set_index("id")
+        return to_dataframe(self.checks).set_index("id")
 
 
 def _shown(value: float | None) -> str:

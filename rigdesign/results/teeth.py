@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,8 @@ from dynamics.rating.scuffing import ContactTemperature
 from dynamics.tooth.mesh_cycle import MeshCycle
 from dynamics.tooth.points import face_sense
 from dynamics.tooth.root_field import Fillet, RootCourse, ToothTurn
-from rigdesign.results.dynamics import StressSource
+from rigdesign.results.loads import StressSource
+from rigdesign.results.quantity import Quantity
 from rigdesign.strain_gauge.measuring_point import GaugeCurve, MeasuringPoint
 
 Array = NDArray[np.float64]
@@ -135,22 +137,22 @@ class PairShare:
 
     mesh: str
     stage: str
-    angle: Row
-    """(n,) rolling angle of the pinion, zero at the pitch point [rad]."""
+    angle: Annotated[Row, Quantity("deg")]
+    """(n,) rolling angle of the pinion, zero at the pitch point."""
     share: Row
     """(n,) of the force of the mesh at that moment, in motion [-]."""
     static_share: Row
     """(n,) at rest [-]"""
     force: Row
     """(n,) over the mean force of the mesh, in motion [-]."""
-    most_loaded: float
-    """Rolling angle at which a pair carries most, in motion [rad]."""
-    face: Row
-    """(m,) position of the slices from mid-face [m]; empty for a mesh of one slice, as the line loads."""
-    line_load: Row
-    """(m,) force in the transverse line of action per face width there, in motion [N/m]."""
-    static_line_load: Row
-    """(m,) at rest, at the same place on the path [N/m]."""
+    most_loaded: Annotated[float, Quantity("deg")]
+    """Rolling angle at which a pair carries most, in motion."""
+    face: Annotated[Row, Quantity("mm")]
+    """(m,) position of the slices from mid-face; empty for a mesh of one slice, as the line loads."""
+    line_load: Annotated[Row, Quantity("N/mm")]
+    """(m,) force in the transverse line of action per face width there, in motion."""
+    static_line_load: Annotated[Row, Quantity("N/mm")]
+    """(m,) at rest, at the same place on the path."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,6 +16,9 @@ HOUR = 3600.0
 """[s]"""
 
 
+_KEY = str.maketrans({"/": "_", " ": None, "(": None, ")": None})
+
+
 @dataclass(frozen=True)
 class DisplayUnit:
     """A unit of results: shown number = ``per_si`` (value - ``zero``)."""
@@ -27,6 +30,15 @@ class DisplayUnit:
     def shown(self, value: float) -> float:
         """The number in this unit of a value in SI."""
         return self.per_si * (value - self.zero)
+
+    def stored(self, value: float) -> float:
+        """The value in SI of a number in this unit."""
+        return value / self.per_si + self.zero
+
+    @property
+    def suffix(self) -> str:
+        """At the end of a key: ``_l_min``; none for a plain number."""
+        return "" if self.name == "-" else "_" + self.name.translate(_KEY)
 
 
 DEGREE_CELSIUS = DisplayUnit("degC", zero=ZERO)
@@ -40,3 +52,28 @@ KILOWATT = DisplayUnit("kW", KW)
 REVOLUTION_PER_MINUTE = DisplayUnit("rpm", RPM)
 NEWTON_METRE = DisplayUnit("N m")
 NUMBER = DisplayUnit("-")
+
+UNITS = {
+    unit.name: unit
+    for unit in (
+        DEGREE_CELSIUS,
+        KELVIN,
+        MILLIMETRE,
+        MICROMETRE,
+        MILLIRADIAN,
+        MEGAPASCAL,
+        LITRE_PER_MINUTE,
+        KILOWATT,
+        REVOLUTION_PER_MINUTE,
+        NEWTON_METRE,
+        NUMBER,
+        *map(DisplayUnit, ("W", "N", "Hz", "s", "h", "m2")),
+        DisplayUnit("ms", 1e3),
+        DisplayUnit("deg", 180.0 / math.pi),
+        DisplayUnit("N/mm", 1e-3),
+        DisplayUnit("N/um", 1e-6),
+        DisplayUnit("kN m/rad", 1e-3),
+        DisplayUnit("m3/h", HOUR),
+    )
+}
+"""By name; a life is kept in hours."""

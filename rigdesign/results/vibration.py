@@ -3,7 +3,9 @@
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Annotated, Literal
+
+from rigdesign.results.quantity import NewtonMetres, Quantity, Revolutions
 
 OrderKind = Literal["mesh", "shaft", "coupling"]
 Sense = Literal["forward", "backward", ""]
@@ -194,12 +196,12 @@ class Waterfall:
     mesh: str
     """Its label."""
     stage: str
-    speed: Row
-    """(s,) of the pinion of the mesh, rising [rad/s]"""
-    frequency: Row
-    """(f,) middles of the bins [Hz]"""
-    amplitude: tuple[Row, ...]
-    """(s, f) largest in each cell [N m]"""
+    speed: Annotated[Row, Quantity("rpm")]
+    """(s,) of the pinion of the mesh, rising"""
+    frequency: Annotated[Row, Quantity("Hz")]
+    """(f,) middles of the bins"""
+    amplitude: Annotated[tuple[Row, ...], Quantity("N m")]
+    """(s, f) largest in each cell, with four digits: it is looked at, not computed with"""
     per_turn: float
     """Mesh frequency per turning frequency of the pinion [-]."""
 
@@ -210,18 +212,17 @@ class HeldSpectrum:
 
     mesh: str
     stage: str
-    speed: float
-    """Of the pinion of the mesh [rad/s]."""
-    mean: float
-    """[N m]"""
+    speed: Revolutions
+    """Of the pinion of the mesh."""
+    mean: NewtonMetres
     order: Row
     """(n,) of the time run, as far as its torque is kept: three mesh orders of the highest speed."""
-    amplitude: Row
-    """(n,) largest around each order [N m]"""
+    amplitude: Annotated[Row, Quantity("N m")]
+    """(n,) largest around each order"""
     harmonic_order: Row
     """(h,) of the periodic response: mesh orders, and those between them where its period is longer than a mesh."""
-    harmonic_amplitude: Row
-    """(h,) [N m]"""
+    harmonic_amplitude: Annotated[Row, Quantity("N m")]
+    """(h,)"""
     teeth: int
     """Of the pinion: order of the mesh frequency."""
 

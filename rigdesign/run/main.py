@@ -33,24 +33,18 @@ from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.dynamics_section import dynamics_section
 from rigdesign.postprocessing.events import solve_events
 from rigdesign.postprocessing.hand_calculation import hand_checks
-from rigdesign.postprocessing.housing import compared_temperatures, fields_of
+from rigdesign.postprocessing.housing import circuit_balances_at, compared_temperatures, fields_of
 from rigdesign.postprocessing.nearest_resonance import held_crossings, require_damping
 from rigdesign.postprocessing.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.postprocessing.warm_gearbox import rolling_bearings
-from rigdesign.results.check import Check, Checks, overall
-from rigdesign.results.result import Finding, RunResult
-from rigdesign.results.serialisation.events import event_row
+from rigdesign.results.check import Check, Checks, Finding, overall
+from rigdesign.results.quantity import Records
+from rigdesign.results.result import CouplingHistory, IterationResidual, RunResult
 from rigdesign.results.serialisation.housing import (
-    circuit_rows,
-    cooling_row,
-    coupling_row,
     loss_rows,
     oil_rows,
-    rig_heat_row,
-    rolling_bearing_row,
     thermal_row,
 )
-from rigdesign.results.serialisation.vibration import lateral_row
 from rigdesign.results.serialisation.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.tooth_influence import Count
@@ -216,23 +210,21 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         dynamics=None if solved.run is None or solved.loads is None else dynamics_section(solved),
         losses=[row for stage, found in losses.items() for row in loss_rows(stage, found)],
         oil=[row for p in points for row in oil_rows(p.point.stage, p.last.streams)],
-        events=[event_row(found) for found in solved.events],
-        rolling_bearings=[rolling_bearing_row(found) for found in rolling_bearings(rig, points)],
-        lateral=None if solved.lateral is None else lateral_row(solved.lateral),
-        cooler=[cooling_row(balance) for balance in solved.cooling],
-        rig_heat=[rig_heat_row(balance.heat, rig.heat_parts.room) for balance in solved.cooling]
-        if case.rig_heat.stated
-        else [],
-        oil_circuits=[row for balance in solved.cooling for row in circuit_rows(balance)],
+        events=Records(solved.events),
+        rolling_bearings=Records(rolling_bearings(rig, points)),
+        lateral=solved.lateral,
+        cooler=Records(solved.cooling),
+        rig_heat=Records(balance.heat for balance in solved.balances if case.rig_heat.stated),
+        oil_circuits=Records(row for balance in solved.balances for row in circuit_balances_at(balance)),
         thermal=[thermal_row(found) for found in solved.temperatures],
         expansion=[expansion_row(warm) for warm in solved.warm],
-        coupling=[coupling_row(p) for p in points],
+        coupling=Records(_history(p) for p in points),
         discretisation=list(solved.discretisation),
         reference_shift=list(solved.mesh_shifts),
         hand_checks=hand,
         inputs=list(case.inputs),
         assumptions=_assumptions(case, checks),
-        overrides=list(case.overrides),
+        overrides=Records(case.overrides),
         not_modelled=not_modelled(solved),
         warnings=[*_doubts(case), *warnings_of(solved, losses), *without_effect(case, checks)],
         timings_s=clock.laps,
@@ -247,6 +239,19 @@ def _case_record(case: Case) -> dict[str, str]:
     record = {"name": case.name, "title": case.title, "path": case.path.name, "hash": case.hash}
     reason = case.schedule.simulation_only
     return record if reason is None else record | {"simulation_only": reason}
+
+
+def _history(result: PointResult) -> CouplingHistory:
+    """Residuals of every iteration of the loop at one held stage."""
+    return CouplingHistory(
+        stage=result.point.stage,
+        residuals=tuple(
+            IterationResidual(
+                temperature=residual.temperature, expansion=residual.length, torque_relative=residual.torque
+            )
+            for residual in result.residuals
+        ),
+    )
 
 
 def _doubts(case: Case) -> list[Finding]:

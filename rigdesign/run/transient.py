@@ -11,8 +11,8 @@ from rigdesign.case.model import Case
 from rigdesign.checks import all_checks
 from rigdesign.coupling.alignment import ALIGNMENT, CouplingEnd, CouplingPlace, coupling_places
 from rigdesign.postprocessing.solved_rig import SolvedRig
-from rigdesign.results.check import Check, Checks, overall
-from rigdesign.results.result import Finding, RunResult
+from rigdesign.results.check import Check, Checks, Finding, overall
+from rigdesign.results.result import RunResult
 from rigdesign.results.serialisation.events import EXTREME_UNITS, worst_moment_row
 from rigdesign.results.thermal import (
     Extreme,

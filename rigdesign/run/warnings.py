@@ -29,8 +29,7 @@ from rigdesign.coupling.temperatures import HousingField, printed_films
 from rigdesign.postprocessing.curves import iso_factor, own_ratio, resolved
 from rigdesign.postprocessing.nearest_resonance import LIGHTLY, REMEDY, light_dwells
 from rigdesign.postprocessing.solved_rig import SolvedRig
-from rigdesign.results.check import Check
-from rigdesign.results.result import Finding
+from rigdesign.results.check import Check, Finding
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import ChamberOil, bearing_oil, gear_oil
@@ -165,17 +164,17 @@ def _time_run(solved: SolvedRig) -> Iterator[str]:
 def _circuits(solved: SolvedRig) -> Iterator[str]:
     """Oil circuits with a heater or cooler at its limit, or oil outside of its data, at the held stages."""
     said: dict[str, str] = {}
-    for balance in solved.cooling:
+    for balance in solved.balances:
         for found in balance.circuits.values():
             for text in found.warnings:
-                said.setdefault(text, f"stage {balance.stage}: {text}")
+                said.setdefault(text, f"stage {balance.cooling.stage}: {text}")
     yield from said.values()
 
 
 def _rig_heat(solved: SolvedRig) -> Iterator[str]:
     """Couplings outside of the range of their law, a room not as warm as the case states, at the held stages."""
-    for balance in solved.cooling:
-        yield from (f"stage {balance.stage}: {text}" for text in balance.heat.warnings)
+    for balance in solved.balances:
+        yield from (f"stage {balance.heat.stage}: {text}" for text in balance.heat.warnings)
 
 
 def oil_at_room_temperature(rig: Rig) -> Iterator[str]:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rigdesign.results.result import Finding
+from rigdesign.results.check import Finding
 from rigdesign.studies.design import Plan
 from rigdesign.studies.result import Crossing, StudyPoint, StudyResult, check_ids
 from rigdesign.studies.statistics import crossings_over, swings

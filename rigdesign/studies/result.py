@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
 from rigdesign.base.errors import UsageError, shortened
-from rigdesign.results.check import Check, Verdict
-from rigdesign.results.result import Finding, RunResult
+from rigdesign.results.check import Check, Finding, Verdict
+from rigdesign.results.result import RunResult
 from rigdesign.studies.grid import Variation
 
 if TYPE_CHECKING:
@@ -67,8 +67,7 @@ class CheckSelection:
         """The result of a run in which the checks that are not selected do not apply, and its verdict then."""
         from rigdesign.checks.rules import not_applicable
         from rigdesign.explanation.keys import declared_rules
-        from rigdesign.results.check import Checks, overall
-        from rigdesign.results.result import Finding
+        from rigdesign.results.check import Checks, Finding, overall
 
         if self.selects_all:
             return result

@@ -206,16 +206,14 @@ def _quantities(document: Mapping[str, Any]) -> list[tuple[tuple[str, str], tupl
         found.append((("oil outlet", place), (_number(row["outlet_degC"]), "degC")))
     total, single = _powers(document["losses"])
     found += [(("losses in all", place), (power, "W")) for place, power in total.items()]
-    for row in document["growth"]:
+    for row in document["expansion"]:
         for gap in row["seal_gaps"]:
             place = f"{gap['seal']}, stage {row['stage']}"
             found.append((("smallest hot seal gap", place), (_number(gap["hot_min_mm"]), "mm")))
-    for gearbox, row in document["dynamics"]["gearboxes"].items():
-        factors = [
-            _number(item["simulated"]) for item in row["dynamic_factor"] if item["simulated"] is not None
-        ]
-        if factors:
-            found.append((("largest K_V over speed", gearbox), (max(factors), "-")))
+    for gearbox, row in (document["dynamics"] or {"gearboxes": {}})["gearboxes"].items():
+        factor = row["largest_dynamic_factor"]
+        if factor is not None:
+            found.append((("largest K_V over speed", gearbox), (_number(factor), "-")))
         peak = row["dynamic_torque_peak_Nm"]
         if peak is not None:
             found.append((("peak torque of the ramp", gearbox), (_number(peak), "Nm")))

@@ -6,7 +6,7 @@ import numpy as np
 
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.checks.rules import Rule, distance
-from rigdesign.results.check import Check, Checks
+from rigdesign.results.check import Check, Checks, Finding, HandCalculation
 from rigdesign.results.dynamics import (
     DynamicFactorPoint,
     DynamicsResult,
@@ -14,7 +14,20 @@ from rigdesign.results.dynamics import (
     RampHistory,
     RootStressHistory,
 )
-from rigdesign.results.result import CouplingHistory, Finding, RunResult
+from rigdesign.results.housing import CoolingBalance
+from rigdesign.results.loads import (
+    ContactLoss,
+    HeldBracing,
+    JointDamping,
+    ListedMode,
+    MeshResonance,
+    RootStressRatio,
+    StageLoad,
+    TorqueBalance,
+    UnsolvedSpeed,
+)
+from rigdesign.results.quantity import Records
+from rigdesign.results.result import CouplingHistory, IterationResidual, RunResult
 from rigdesign.results.thermal import (
     ExpansionResult,
     HeatRow,
@@ -23,6 +36,7 @@ from rigdesign.results.thermal import (
     TemperatureField,
     ThermalResult,
 )
+from rigdesign.results.units import RPM
 from thermal.fe.mesh import NamedMesh
 
 KUHN = [(0, 1, 3, 7), (0, 1, 5, 7), (0, 2, 3, 7), (0, 2, 6, 7), (0, 4, 5, 7), (0, 4, 6, 7)]
@@ -220,25 +234,26 @@ def gearbox(role, excitation, resonances):
         dynamic_factor=curve(1.0),
         dynamic_factor_at={"90 Nm": curve(1.2)},
         stage_loads=[
-            {
-                "stage": "run_up",
-                "dynamic_factor": 1.4,
-                "speed_rpm": 1796.0,
-                "mean_Nm": 90.0,
-                "peak_Nm": 126.0,
-                "least_Nm": 54.0,
-                "least_share": 0.6,
-                "least_share_at_rpm": 1796.0,
-            }
+            StageLoad(
+                stage="run_up",
+                dynamic_factor=1.4,
+                speed=1796.0 / RPM,
+                mean=90.0,
+                peak=126.0,
+                least=54.0,
+                least_share=0.6,
+                least_share_speed=1796.0 / RPM,
+                least_share_mean=90.0,
+            )
         ],
         dynamic_torque_peak_Nm=331.0,
         iso_factors={"K_V": 0.872, "N": 4.06, "c_gamma_alpha": 13.9, "range": "supercritical"},
-        lift_off=[{"stage": "run_up", "start_s": 2.31, "end_s": 2.42, "share": 0.02}],
+        lift_off=[ContactLoss(stage="run_up", start=2.31, end=2.42, share=0.02, longest_gap=1e-3)],
         resonances=resonances,
-        unsolved=[{"curve": "90 Nm", "speed_rpm": 1800.0, "reason": "not settled"}],
+        unsolved=[UnsolvedSpeed(curve="90 Nm", speed=1800.0 / RPM, reason="not settled")],
         root_stress=histories if role == "specimen" else [],
         root_stress_factor=[
-            {"speed_rpm": float(n), "pinion": float(k * 0.97), "wheel": float(k * 0.95)}
+            RootStressRatio(speed=float(n) / RPM, pinion=float(k * 0.97), wheel=float(k * 0.95))
             for n, k in zip(speed[::4], kv[::4])
         ],
         geometry={
@@ -280,55 +295,78 @@ def ramp():
 
 def dynamics():
     resonances = [
-        {
-            "torque": "180 Nm",
-            "mode": "pinion against wheel, test",
-            "frequency_Hz": 4022.7,
-            "harmonic": 2,
-            "speed_rpm": 1219.0,
-            "amplification": 2.6,
-            "dangerous": True,
-        },
-        {
-            "torque": "180 Nm",
-            "mode": "wheel shaft, test",
-            "frequency_Hz": 5926.7,
-            "harmonic": 2,
-            "speed_rpm": 1796.0,
-            "amplification": 1.2,
-            "dangerous": False,
-        },
+        MeshResonance(
+            torque="180 Nm",
+            mode="pinion against wheel, test",
+            frequency=4022.7,
+            harmonic=2,
+            speed=1219.0 / RPM,
+            dynamic_factor=1.2,
+            force_share=0.2,
+            amplification=2.6,
+            at_end=False,
+            dangerous=True,
+        ),
+        MeshResonance(
+            torque="180 Nm",
+            mode="wheel shaft, test",
+            frequency=5926.7,
+            harmonic=2,
+            speed=1796.0 / RPM,
+            dynamic_factor=1.3,
+            force_share=0.3,
+            amplification=1.2,
+            at_end=False,
+            dangerous=False,
+        ),
     ]
     return DynamicsResult(
         gearboxes={"test": gearbox("specimen", 0.5, resonances), "reference": gearbox("rig", 0.1, [])},
-        natural_frequencies=[
-            {"frequency_Hz": 412.0, "damping_ratio": 0.04, "shape": "test against reference gearbox"}
-        ],
-        damping_audit=[
-            {
-                "joint": "test pinion spline",
-                "damping_ratio": 0.34,
-                "corner_frequency_Hz": 2100.0,
-                "warning": "damping_ratio 0.34 above 0.3; check the damper",
-            }
-        ],
+        natural_frequencies=Records(
+            [
+                ListedMode(
+                    mode=1,
+                    frequency=412.0,
+                    damping_ratio=0.04,
+                    shape="test against reference gearbox",
+                    largest_at="test_pinion",
+                )
+            ]
+        ),
+        damping_audit=Records(
+            [
+                JointDamping(
+                    joint="test pinion spline",
+                    kind="spline",
+                    damping_ratio=0.34,
+                    corner_frequency=2100.0,
+                    own_frequency=400.0,
+                    warning="damping_ratio 0.34 above 0.3; check the damper",
+                )
+            ]
+        ),
         sampling={"samples_per_mesh": 2.02, "internal_steps": 8},
-        bracing=[
-            {
-                "stage": "dwell",
-                "torque": "180 Nm",
-                "mode": "torque_controlled",
-                "torque_Nm": 180.0,
-                "twist_deg": 1.31,
-                "axial_shift_mm": 3.9,
-                "half_gear_rotation_deg": 0.66,
-                "actuator_force_N": 1240.0,
-                "torque_cold_Nm": 180.0,
-                "torque_hot_Nm": 180.0,
-            }
-        ],
+        bracing=Records(
+            [
+                HeldBracing(
+                    stage="dwell",
+                    mode="torque_controlled",
+                    torque=180.0,
+                    twist=0.0229,
+                    axial_shift=3.9e-3,
+                    half_gear_rotation=0.0115,
+                    actuator_force=1240.0,
+                    spline_friction=0.0,
+                    loop_stiffness=1e4,
+                    torque_as_drawn=180.0,
+                    axial_shift_as_drawn=3.9e-3,
+                )
+            ]
+        ),
         ramp=ramp(),
-        torque_balance=[{"stage": "dwell", "drive_torque_Nm": 9.1, "losses_Nm": 9.08}],
+        torque_balance=Records(
+            [TorqueBalance(stage="dwell", drive_torque=9.1, drive_power=11435.0, losses=11410.0)]
+        ),
     )
 
 
@@ -469,41 +507,35 @@ def make_result(**changes):
             )
         ],
         "cooler": [
-            {
-                "stage": "dwell",
-                "losses_W": 12265.0,
-                "pump_W": 14.0,
-                "heater_W": 600.0,
-                "cooler_W": 10500.0,
-                "room_W": 2379.0,
-                "open_W": 0.0,
-                "flow_l_min": 26.0,
-            }
+            CoolingBalance(
+                stage="dwell",
+                losses=12265.0,
+                pump=14.0,
+                heater=600.0,
+                cooler=10500.0,
+                room=2379.0,
+                stored=None,
+                not_heat=0.0,
+                flow=26.0 / 6e4,
+            )
         ],
         "thermal": [thermal],
         "expansion": [expansion],
         "coupling": [
             CouplingHistory(
                 stage="dwell",
-                iterations=4,
-                residuals=[
-                    {
-                        "temperature_K": 80.0 / 20**n,
-                        "growth_um": 300.0 / 18**n,
-                        "torque_relative": 0.02 / 12**n,
-                    }
+                residuals=tuple(
+                    IterationResidual(
+                        temperature=80.0 / 20**n, expansion=3e-4 / 18**n, torque_relative=0.02 / 12**n
+                    )
                     for n in range(4)
-                ],
+                ),
             )
         ],
         "hand_checks": [
-            {
-                "quantity": "shaft growth, pinion",
-                "computed": 0.53,
-                "by_hand": 0.55,
-                "unit": "mm",
-                "formula": "alpha L dT",
-            }
+            HandCalculation(
+                quantity="shaft growth, pinion", computed=0.53, by_hand=0.55, unit="mm", formula="alpha L dT"
+            )
         ],
         "assumptions": [
             AssumptionRecord(

@@ -7,7 +7,7 @@ from rigdesign.case import Case, load_case
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
-from rigdesign.postprocessing.housing import cooling_balance
+from rigdesign.postprocessing.housing import stage_balance
 from rigdesign.rig.model import Rig
 from tests.builders.twisting import twisting_rig
 
@@ -76,5 +76,5 @@ def heat_by_kind(last: IterationResult) -> dict[str, float]:
 
 def open_share(rig: Rig, last: IterationResult) -> float:
     """What losses and heaters put in beyond what cooler and room take out, over the losses."""
-    balance = cooling_balance(rig, last)
+    balance = stage_balance(rig, last).cooling
     return abs(balance.imbalance) / balance.losses

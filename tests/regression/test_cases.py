@@ -153,7 +153,7 @@ def test_the_report_of_the_prototype_stays_below_three_and_a_half_megabytes() ->
 def test_heat_of_the_rig_closes() -> None:
     """Losses and heaters leave by cooler and room; what is open is the tolerance of the coupling loop."""
     for row in prototype().cooler:
-        assert abs(float(row["open_W"])) < 1e-4 * float(row["losses_W"])
+        assert abs(row.imbalance) < 1e-4 * row.losses
     assert all(row.closure_relative < 1e-8 for row in prototype().thermal)
 
 
@@ -161,7 +161,7 @@ def test_motor_power_is_the_sum_of_all_losses() -> None:
     """Bearings, windage, oil, seals, squeezing, tooth friction and damping; joints take next to nothing."""
     assert prototype().dynamics is not None
     for row in prototype().dynamics.torque_balance:
-        assert row["losses_W"] == pytest.approx(row["drive_power_W"], rel=1e-3)
+        assert row.losses == pytest.approx(row.drive_power, rel=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -219,8 +219,7 @@ def test_events_of_the_prototype_reach_every_check_that_depends_on_them() -> Non
     flange = [checks[f"bought_part{key}.torque_flange"].value for key in ("", "_event")]
     assert flange[0] is not None and flange[1] is not None and 180.0 < flange[0] < flange[1] < 400.0
     peaks = {
-        event["name"]: {(row["place"], row["quantity"]): row["peak"] for row in event["peaks"]}
-        for event in result.events
+        event.name: {(row.place, row.quantity): row.peak for row in event.peaks} for event in result.events
     }
     one, two = (peaks[name]["test.pinion", "seat torque"] for name in ("one_tooth", "two_teeth"))
     assert 1.5 * 180.0 < one < two

@@ -31,7 +31,7 @@ from rigdesign.coupling.preloaded_loop import LoadedCircuit, respond
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points
 from rigdesign.postprocessing.dynamics import bracing_drift
-from rigdesign.postprocessing.housing import cooling_balance
+from rigdesign.postprocessing.housing import stage_balance
 from rigdesign.rig.model import Rig, RigParts, build_rig
 from tests.builders.oil_circuit import plant_case
 
@@ -513,7 +513,7 @@ def test_all_heat_goes_to_cooler_or_room() -> None:
     at most rho c Q times the temperature residual for a stream, twice that for a film (T = T_in + H / 2 rho c Q).
     """
     rig, base = controlled()
-    balance = cooling_balance(rig, base.last)
+    balance = stage_balance(rig, base.last).cooling
     streams = math.fsum(heat_capacity_flow(s.name.split(".")[1], s.flow) for s in base.last.streams[:2])
     films = 4.0 * heat_capacity_flow("bearing_oil", rig.case.gearboxes["test"].bearing_oil.flow)
     bound = base.residuals[-1].temperature * (streams + 2.0 * films)

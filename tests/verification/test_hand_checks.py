@@ -110,7 +110,7 @@ def test_both_windage_laws_stand_beside_each_other_and_the_range_of_the_mist_hol
     """Every gear of the prototype: Anderson and Loewenthal lie between the default law at 1.2 and at 20 kg/m3."""
     rig, result = base()
     solved: Any = SimpleNamespace(rig=rig, test=result, cooling=())
-    rows = {row["quantity"]: row for row in _losses(solved) if row["quantity"].startswith("windage")}
+    rows = {row.quantity: row for row in _losses(solved) if row.quantity.startswith("windage")}
     assert len(rows) == 4
     wide = rows["windage, reference.pinion"]
     fed = rig.case.gearboxes["reference"].oil
@@ -118,10 +118,10 @@ def test_both_windage_laws_stand_beside_each_other_and_the_range_of_the_mist_hol
     oil = rig.oils[fed.oil].dynamic_viscosity(mean)
     warm = next(model.pair for model in result.last.models if model.name == "reference.main")
     radius, halves = warm.gears[0].reference_radius, 0.08
-    assert wide["by_hand"] == pytest.approx(
+    assert wide.by_hand == pytest.approx(
         anderson_loewenthal(radius, halves, result.point.speed, oil), rel=1e-9
     )
-    assert 1.2 < wide["computed"] / wide["by_hand"] < 2.0
+    assert 1.2 < wide.computed / wide.by_hand < 2.0
     powers = {}
     for density in ("1.2 kg/m3", "20 kg/m3"):
         changed = build_rig(rig.case.with_value("losses.chamber_density", density), "quick")
@@ -131,4 +131,4 @@ def test_both_windage_laws_stand_beside_each_other_and_the_range_of_the_mist_hol
         powers[density] = {p.name: p.loss.power for p in losses if p.loss.kind == "windage"}
     for name, row in rows.items():
         gear = name.removeprefix("windage, ")
-        assert powers["1.2 kg/m3"][gear] < row["by_hand"] < powers["20 kg/m3"][gear]
+        assert powers["1.2 kg/m3"][gear] < row.by_hand < powers["20 kg/m3"][gear]

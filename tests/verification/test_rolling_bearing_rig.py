@@ -36,17 +36,15 @@ def mixed() -> RunResult:
 
 def test_a_mixed_rig_closes_its_heat() -> None:
     (balance,) = mixed().cooler
-    assert abs(float(balance["open_W"])) < 2e-3 * float(balance["losses_W"])
+    assert abs(balance.imbalance) < 2e-3 * balance.losses
     assert all(abs(found.closure_relative) < 1e-6 for found in mixed().thermal)
-    rows = {row["bearing"]: row for row in mixed().rolling_bearings}
+    rows = {row.bearing: row for row in mixed().rolling_bearings}
     assert sorted(rows) == [
         "slave.pinion_front", "slave.pinion_rear", "slave.wheel_front", "slave.wheel_rear",
         "test.pinion_front", "test.pinion_rear", "test.wheel_rear",
     ]  # fmt: skip
     assert all(
-        row["heat_to_shaft_W"] == row["heat_to_housing_W"] == 0.0
-        for name, row in rows.items()
-        if "slave" in name
+        row.heat_to_shaft == row.heat_to_housing == 0.0 for name, row in rows.items() if "slave" in name
     )
     losses = {row.place: row for row in mixed().losses if row.kind == "bearing" and row.stage == "test"}
     assert losses["test.wheel_front"].basis == "input" and losses["test.wheel_front"].into_body_W == 0.0
@@ -55,22 +53,20 @@ def test_a_mixed_rig_closes_its_heat() -> None:
 
 def test_each_end_of_a_shaft_runs_on_its_own_bearing() -> None:
     """The friction of the 6306 enters its own seats; the plain bearing at the other end of its shaft has none."""
-    rows = {row["bearing"]: row for row in mixed().rolling_bearings}
+    rows = {row.bearing: row for row in mixed().rolling_bearings}
     front, rear, ball = (rows[f"test.{name}"] for name in ("pinion_front", "pinion_rear", "wheel_rear"))
-    assert (front["designation"], rear["designation"], ball["designation"]) == (
+    assert (front.designation, rear.designation, ball.designation) == (
         "NU 206 ECP",
         "NJ 406",
         "6306",
     )
-    share = front["radial_load_N"] / rear["radial_load_N"]
+    share = front.radial_load / rear.radial_load
     assert share == pytest.approx(1.0, abs=2e-3)  # gear in the middle; the weight of the shaft is not
-    assert front["basic_life_h"] / rear["basic_life_h"] == pytest.approx(
-        (44.0 / 60.5 / share) ** (10 / 3), rel=1e-6
-    )
-    into_seats = ball["heat_to_shaft_W"] + ball["heat_to_housing_W"]
+    assert front.basic_life / rear.basic_life == pytest.approx((44.0 / 60.5 / share) ** (10 / 3), rel=1e-6)
+    into_seats = ball.heat_to_shaft + ball.heat_to_housing
     losses = {row.place: row for row in mixed().losses if row.kind == "bearing" and row.stage == "test"}
     assert 0.0 < into_seats < losses["test.wheel_rear"].power_W
-    assert all(row["tilting_stiffness_kNm_rad"] > 0.0 for row in rows.values())
+    assert all(row.tilting_stiffness > 0.0 for row in rows.values())
 
 
 def test_rows_stand_in_the_document_and_add_up() -> None:
@@ -84,9 +80,9 @@ def test_checks_of_both_kinds_stand_side_by_side() -> None:
     checks = {check.id: check for check in mixed().checks}
     life = checks["bearing.rating_life"]
     assert (life.limit, life.unit) == (300.0, "h") and life.source == "test_plan.time"
-    least = min(row["modified_life_h"] for row in mixed().rolling_bearings)
+    least = min(row.modified_life or math.inf for row in mixed().rolling_bearings)
     assert life.value == pytest.approx(least)
-    hottest = max(row["temperature_degC"] for row in mixed().rolling_bearings)
+    hottest = max(row.temperature - 273.15 for row in mixed().rolling_bearings)
     assert checks["bearing.temperature"].value == pytest.approx(hottest)
     assert checks["bearing.temperature"].limit == pytest.approx(120.0)
     assert checks["bearing.speed"].verdict == "pass" and checks["bearing.minimum_load"].verdict == "pass"
@@ -96,8 +92,8 @@ def test_checks_of_both_kinds_stand_side_by_side() -> None:
 def test_fzg_bearings_beside_the_hand_values() -> None:
     """Hand values 38 and 25 W a bearing by ISO/TR 14179-2 at 372.6 N m; what the teeth lose and weight load more."""
     for row in mixed().rolling_bearings:
-        if row["bearing"].startswith("slave."):
-            by_hand = float(BEARINGS[row["bearing"].split(".")[1].split("_")[0]].split()[0])
-            assert row["friction_W"] == pytest.approx(by_hand, rel=0.12)
+        if row.bearing.startswith("slave."):
+            by_hand = float(BEARINGS[row.bearing.split(".")[1].split("_")[0]].split()[0])
+            assert row.friction == pytest.approx(by_hand, rel=0.12)
             # Palmgren: f_1 F d_m with f_1 = 0.0004, d_m = 60 mm
-            assert row["rolling_torque_Nm"] == pytest.approx(0.0004 * row["radial_load_N"] * 0.06, rel=1e-9)
+            assert row.rolling_torque == pytest.approx(0.0004 * row.radial_load * 0.06, rel=1e-9)

@@ -68,14 +68,25 @@ def explain(
 
 
 @app.command
-def schema(*, reference: Annotated[bool, Parameter(negative=())] = False) -> int:
+def schema(
+    *,
+    reference: Annotated[bool, Parameter(negative=())] = False,
+    results: Annotated[bool, Parameter(negative=())] = False,
+) -> int:
     """Print the JSON Schema of the case file, for editors.
 
     Parameters
     ----------
     reference
         Print the key reference instead: every key with kind, units, default and what it is, as Markdown.
+    results
+        Print the JSON Schema of results.json instead: every key with its unit.
     """
+    if results:
+        from rigdesign.report.results_json import results_schema
+
+        print_json(results_schema())
+        return 0
     if reference:
         from rigdesign.explanation.keys import key_reference
 

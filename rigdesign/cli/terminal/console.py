@@ -153,9 +153,11 @@ def print_run(result: "RunResult") -> None:
     """Iterations and last residuals of every held stage, seconds of every part; nothing unless asked for."""
     if verbosity.get() != "verbose":
         return
+    from rigdesign.results.quantity import row
+
     console = new_console(stderr=True)
     for history in result.coupling:
-        last = ", ".join(f"{key} {value:.2g}" for key, value in history.residuals[-1].items())
+        last = ", ".join(f"{key} {value:.2g}" for key, value in row(history.residuals[-1]).items())
         console.print(Text(f"stage {history.stage}: {history.iterations} iterations, last residuals {last}"))
     parts = ", ".join(f"{part} {seconds:.2f} s" for part, seconds in result.timings_s.items())
     console.print(Text(f"parts of the run: {parts}"))

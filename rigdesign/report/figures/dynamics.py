@@ -1,5 +1,6 @@
 """Figures of the drivetrain: K_V(n), root stress over the mesh."""
 
+from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
@@ -24,6 +25,8 @@ from rigdesign.report.palette import (
     gearbox_colours,
 )
 from rigdesign.results.dynamics import DynamicFactorPoint, DynamicsResult, GearboxDynamics, RampHistory
+from rigdesign.results.loads import RootStressRatio
+from rigdesign.results.quantity import value_in_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -86,9 +89,9 @@ def _dynamic_factor(axes: "Axes", gearbox: GearboxDynamics, style: CurveStyle, o
         label="ISO 6336-1:2006 method B",
     )
     dangerous = [
-        item["speed_rpm"]
+        value_in_unit(item, "speed")
         for item in gearbox.resonances
-        if item.get("dangerous") and item["torque"] == gearbox.torque
+        if item.dangerous and item.torque == gearbox.torque
     ]
     if dangerous and points:
         heights = np.interp(dangerous, speed, [p.simulated for p in points])
@@ -111,13 +114,13 @@ def _with_gaps(
     nothing = float("nan")
     holes = [
         DynamicFactorPoint(
-            speed_rpm=row["speed_rpm"],
+            speed_rpm=value_in_unit(hole, "speed"),
             simulated=nothing,
             simulated_half_peak_to_peak=nothing,
             iso_6336_1_method_b=nothing,
         )
-        for row in gearbox.unsolved
-        if row["curve"] == curve
+        for hole in gearbox.unsolved
+        if hole.curve == curve
     ]
     return sorted([*points, *holes], key=lambda point: point.speed_rpm)
 
@@ -147,15 +150,14 @@ def root_stress_figure(gearbox: GearboxDynamics, style: CurveStyle | None = None
 
 
 def _stress_ratio(
-    axes: "Axes", rows: list[dict[str, float]], points: list[DynamicFactorPoint], style: CurveStyle
+    axes: "Axes", ratios: Sequence[RootStressRatio], points: list[DynamicFactorPoint], style: CurveStyle
 ) -> None:
-    speed = [row["speed_rpm"] for row in rows]
-    gears = [key for key in rows[0] if key != "speed_rpm"]
+    speed = [value_in_unit(ratio, "speed") for ratio in ratios]
     axes.plot(
         [p.speed_rpm for p in points], [p.simulated for p in points], color=MUTED, linewidth=0.9, label=KV
     )
-    for line, colour, gear in zip(LINES, (style.colour, INK), gears, strict=False):
-        values = [row[gear] for row in rows]
+    for line, colour, gear in zip(LINES, (style.colour, INK), ("pinion", "wheel"), strict=False):
+        values = [getattr(ratio, gear) for ratio in ratios]
         axes.plot(speed, values, color=colour, linestyle=line, label=f"{SIGMA_F} ratio, {words(gear)}")
     axes.set_xlim(left=0)
     axes.locator_params(axis="x", nbins=4)

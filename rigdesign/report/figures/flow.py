@@ -3,11 +3,12 @@
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rigdesign.report.figures.drawing import new_figure, plain
 from rigdesign.report.numbers import quantity_text
 from rigdesign.report.palette import INK, SERIES
+from rigdesign.results.housing import CoolingBalance
 from rigdesign.results.thermal import LossRow, OilRow, ThermalResult
 
 if TYPE_CHECKING:
@@ -175,11 +176,11 @@ LABEL_ROOM = 0.062
 
 
 def rig_flow_figure(
-    losses: Sequence[LossRow], oil: Sequence[OilRow], cooler: Mapping[str, Any]
+    losses: Sequence[LossRow], oil: Sequence[OilRow], cooler: CoolingBalance
 ) -> "Figure | None":
     """Losses of one stage by kind, through oil and bodies, to cooler and room [W]; None without a loss.
 
-    losses, oil : rows of the stage; cooler : its row of ``RunResult.cooler``
+    losses, oil : rows of the stage; cooler : its heat balance
     """
     into_oil: dict[str, float] = defaultdict(float)
     into_bodies: dict[str, float] = defaultdict(float)
@@ -190,11 +191,11 @@ def rig_flow_figure(
         into_bodies[_words(row.kind)] += row.into_body_W
     flows = [Flow(kind, OIL, max(power, 0.0)) for kind, power in into_oil.items()]
     flows += [Flow(kind, BODIES, max(power, 0.0)) for kind, power in into_bodies.items()]
-    if cooler.get("machines_W"):
-        flows.append(Flow(MACHINES, OIL, float(cooler["machines_W"])))
-    flows += [Flow(HEATERS, OIL, float(cooler["heater_W"])), Flow(OIL, COOLER, float(cooler["cooler_W"]))]
-    flows.append(Flow(BODIES, ROOM, max(float(cooler["room_W"]), 0.0)))
-    flows.append(Flow(BODIES, STREAMS, max(float(cooler.get("streams_W", 0.0)), 0.0)))
+    if cooler.machines:
+        flows.append(Flow(MACHINES, OIL, cooler.machines))
+    flows += [Flow(HEATERS, OIL, cooler.heater), Flow(OIL, COOLER, cooler.cooler)]
+    flows.append(Flow(BODIES, ROOM, max(cooler.room, 0.0)))
+    flows.append(Flow(BODIES, STREAMS, max(cooler.streams or 0.0, 0.0)))
     given = sum(row.heat_W for row in oil) - sum(row.into_oil_W for row in losses)
     flows.append(Flow(BODIES, OIL, given) if given >= 0.0 else Flow(OIL, BODIES, -given))
     totals = {kind: into_oil[kind] + into_bodies[kind] for kind in into_oil}
@@ -203,7 +204,7 @@ def rig_flow_figure(
         return None
     middle, bodies = ([BODIES, OIL], 1) if given >= 0.0 else ([OIL, BODIES], 2)
     columns = [
-        [HEATERS, *([MACHINES] if cooler.get("machines_W") else []), *kinds],
+        [HEATERS, *([MACHINES] if cooler.machines else []), *kinds],
         [middle[0]],
         [middle[1]],
         [COOLER, ROOM, STREAMS],

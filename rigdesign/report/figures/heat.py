@@ -6,8 +6,11 @@ from typing import TYPE_CHECKING, Any
 from rigdesign.report.figures.drawing import finish, legend_right, new_figure, words
 from rigdesign.report.numbers import WORDS, power_text, quantity_text, split_key
 from rigdesign.report.palette import COLD, INK, MUTED, SERIES, WARM, curve_style
+from rigdesign.results.housing import RigHeat, Sink
+from rigdesign.results.quantity import row as shown_row
 from rigdesign.results.result import CouplingHistory
 from rigdesign.results.thermal import LossRow, OilRow
+from rigdesign.results.units import KW
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,12 +19,12 @@ if TYPE_CHECKING:
 
 SEPARATED: dict[str, Any] = {"edgecolor": "white", "linewidth": 0.6}
 """Parts of a bar: an edge separates them without their colours."""
-SINKS = {
-    "oil_W": "into the oil",
-    "room_W": "to the room",
-    "water_W": "cooling water",
-    "stored_W": "stored",
-    "no_heat_W": "no heat (mesh damper)",
+SINKS: Mapping[Sink, str] = {
+    "oil": "into the oil",
+    "room": "to the room",
+    "water": "cooling water",
+    "stored": "stored",
+    "no_heat": "no heat (mesh damper)",
 }
 LEAST_SHARE = 1e-5
 """Of all heat, from which a sink is drawn."""
@@ -120,15 +123,15 @@ def oil_figure(oil: list[OilRow], stage: str) -> "Figure":
 
 def convergence_figure(histories: list[CouplingHistory]) -> "Figure":
     """Residuals of the coupling loop by iteration, logarithmic."""
-    quantities = list(dict.fromkeys(key for history in histories for row in history.residuals for key in row))
+    rows = {history.stage: [shown_row(residual) for residual in history.residuals] for history in histories}
+    quantities = list(dict.fromkeys(key for own in rows.values() for values in own for key in values))
     figure = new_figure(2.4)
     axes_list = figure.subplots(1, max(1, len(quantities)), squeeze=False)[0]
     for axes, quantity in zip(axes_list, quantities, strict=False):
         for number, history in enumerate(histories):
             style = curve_style(number)
-            values = [
-                (n, row[quantity]) for n, row in enumerate(history.residuals, start=1) if row.get(quantity)
-            ]
+            own = enumerate(rows[history.stage], start=1)
+            values = [(n, residual[quantity]) for n, residual in own if residual[quantity]]
             axes.plot(
                 [n for n, _ in values],
                 [abs(v) for _, v in values],
@@ -137,7 +140,7 @@ def convergence_figure(histories: list[CouplingHistory]) -> "Figure":
                 markersize=3,
                 label=words(history.stage),
             )
-        if any(row.get(quantity) for history in histories for row in history.residuals):
+        if any(residual[quantity] for own in rows.values() for residual in own):
             _logarithmic(axes)
         axes.xaxis.get_major_locator().set_params(integer=True)
         finish(axes, "iteration [–]", *_residual_labels(quantity))
@@ -163,20 +166,17 @@ def _residual_labels(key: str) -> tuple[str, str]:
     return f"largest change [{unit or '–'}]", quantity.capitalize()
 
 
-def rig_heat_figure(row: Mapping[str, Any]) -> "Figure":
-    """Heat of every source at one stage [kW], divided by its sinks; to the left what is taken from there.
-
-    row : of ``RunResult.rig_heat``
-    """
-    sources = [source for source in row["sources"] if any(source[sink] for sink in SINKS)]
+def rig_heat_figure(heat: RigHeat) -> "Figure":
+    """Heat of every source at one stage [kW], divided by its sinks; to the left what is taken from there."""
+    sources = [source for source in heat.sources if any(source.sinks.values())]
     height = 0.8 + 0.27 * len(sources)
     figure = new_figure(height)
     axes = figure.subplots()
     given, taken = [0.0] * len(sources), [0.0] * len(sources)
-    visible = LEAST_SHARE * sum(abs(source[sink]) for source in sources for sink in SINKS)
+    visible = LEAST_SHARE * sum(abs(power) for source in sources for power in source.sinks.values())
     for number, (sink, text) in enumerate(SINKS.items()):
-        values = [1e-3 * source[sink] for source in sources]
-        if not any(abs(source[sink]) > visible for source in sources):
+        values = [KW * source.sinks.get(sink, 0.0) for source in sources]
+        if not any(abs(source.sinks.get(sink, 0.0)) > visible for source in sources):
             continue
         left = [given[i] if value >= 0.0 else taken[i] for i, value in enumerate(values)]
         axes.barh(
@@ -187,17 +187,15 @@ def rig_heat_figure(row: Mapping[str, Any]) -> "Figure":
         taken = [start + min(value, 0.0) for start, value in zip(taken, values, strict=True)]
     for place, (source, end) in enumerate(zip(sources, given, strict=True)):
         axes.annotate(
-            quantity_text(source["power_W"], "W", digits=3), (end, place), textcoords="offset points", xytext=(4, -3),
+            quantity_text(source.power, "W", digits=3), (end, place), textcoords="offset points", xytext=(4, -3),
             fontsize=8,
         )  # fmt: skip
     axes.axvline(0.0, color=INK, linewidth=0.6)
-    axes.set_yticks(
-        range(len(sources)), [words(f"{source['kind']} {source['source']}") for source in sources]
-    )
+    axes.set_yticks(range(len(sources)), [words(f"{source.kind} {source.name}") for source in sources])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     axes.set_xlim(1.05 * min(taken), 1.12 * max(given))
-    finish(axes, f"heat at stage {words(str(row['stage']))} [kW]")
+    finish(axes, f"heat at stage {words(heat.stage)} [kW]")
     axes.legend(loc="best")
     figure.subplots_adjust(left=0.26, right=0.975, top=1 - 0.1 / height, bottom=0.47 / height)
     return figure

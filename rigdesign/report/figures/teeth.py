@@ -9,6 +9,8 @@ from rigdesign.report.figures.drawing import finish, gearbox_title, new_figure, 
 from rigdesign.report.numbers import unit_text
 from rigdesign.report.palette import INK, LINES, MUTED, CurveStyle, curve_style
 from rigdesign.results.dynamics import ToothTurnHistory
+from rigdesign.results.quantity import value_in_unit
+from rigdesign.results.teeth import PairShare
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -76,25 +78,25 @@ def _pattern(figure: "Figure", axes: "Axes", contact: dict[str, Any], style: Cur
     gearbox_title(axes, "Pinion flank", style)
 
 
-def pair_share_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
+def pair_share_figure(rows: Sequence[PairShare], styles: Mapping[str, CurveStyle]) -> "Figure":
     """A panel for each gearbox and held stage: share of the mesh force and force over the mean, over the pinion; below
     it the line load over the face where a pair carries most."""
-    faces = any(row["face_mm"] for row in rows)
+    faces = any(row.face for row in rows)
     height = 5.2 if faces else 2.9
     figure, panels = panels_in_pairs(height, len(rows), 1 + faces)
     lines = figure.get_figheight() / height
     for number, ((axes, *below), row) in enumerate(zip(panels, rows, strict=True)):
-        style = styles[row["gearbox"]]
-        angle = row["rolling_angle_deg"]
-        axes.plot(angle, row["share_quasi_static"], color=INK, linewidth=0.9, label="share, quasi-static")
-        axes.plot(angle, row["share"], color=style.colour, label="share, in motion")
+        style = styles[row.mesh]
+        angle = value_in_unit(row, "angle")
+        axes.plot(angle, row.static_share, color=INK, linewidth=0.9, label="share, quasi-static")
+        axes.plot(angle, row.share, color=style.colour, label="share, in motion")
         axes.plot(
-            angle, row["force_over_mean"], color=style.colour, linewidth=0.9, linestyle=LINES[2],
+            angle, row.force, color=style.colour, linewidth=0.9, linestyle=LINES[2],
             label="force over the mean force of the mesh",
         )  # fmt: skip
         axes.set_ylim(bottom=0)
         finish(axes, "rolling angle of the pinion φ [°]", "share of a pair [–]" if number % 2 == 0 else "")
-        gearbox_title(axes, f"Gearbox {words(row['gearbox'])}, stage {words(row['stage'])}", style)
+        gearbox_title(axes, f"Gearbox {words(row.mesh)}, stage {words(row.stage)}", style)
         for lower in below:
             _line_load(lower, row, style, number)
     panels[0, 0].legend(loc="lower center", fontsize=8)
@@ -109,15 +111,15 @@ def pair_share_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
     return figure
 
 
-def _line_load(axes: "Axes", row: Mapping[str, Any], style: CurveStyle, number: int) -> None:
+def _line_load(axes: "Axes", row: PairShare, style: CurveStyle, number: int) -> None:
     """Line load over the face in motion and at rest, at the angle at which a pair carries most."""
-    face = row["face_mm"]
-    axes.plot(face, row["line_load_quasi_static_N_mm"], color=INK, linewidth=0.9, label="quasi-static")
-    axes.plot(face, row["line_load_N_mm"], color=style.colour, label="in motion")
+    face = value_in_unit(row, "face")
+    axes.plot(face, value_in_unit(row, "static_line_load"), color=INK, linewidth=0.9, label="quasi-static")
+    axes.plot(face, value_in_unit(row, "line_load"), color=style.colour, label="in motion")
     axes.set_ylim(bottom=0)
     finish(
         axes,
-        f"position from mid-face [mm], at φ = {round(row['most_loaded_angle_deg'], 1) + 0.0:.1f}°",
+        f"position from mid-face [mm], at φ = {round(value_in_unit(row, 'most_loaded'), 1) + 0.0:.1f}°",
         f"line load [{unit_text('N/mm')}]" if number % 2 == 0 else "",
     )
     if number == 0:

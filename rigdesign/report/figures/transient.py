@@ -2,9 +2,9 @@
 
 import math
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rigdesign.report.figures.drawing import finish, legend_right, new_figure, words
 from rigdesign.report.numbers import unit_text
 from rigdesign.report.palette import COLD, INK, LINES, MUTED, WARM, CurveStyle, curve_style
+from rigdesign.results.loads import EventRecord
 from rigdesign.results.thermal import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
 
 if TYPE_CHECKING:
@@ -240,24 +241,24 @@ def _time_axis(axes: "Axes", columns: Sequence[FigureColumn]) -> None:
     axes.set_xlabel("time since the start of the phase, logarithmic")
 
 
-def event_figure(event: Mapping[str, Any]) -> "Figure":
+def event_figure(event: EventRecord) -> "Figure":
     """Coupling torques in the upper part, mesh torques in the lower one; zero is the instant of the event."""
     height = 4.2
     figure = new_figure(height)
     axes_list = figure.subplots(2, 1, sharex=True)
-    time = [1e3 * value for value in event["curves"]["time_s"]]
+    time = [1e3 * value for value in event.time]
     for axes, quantity in zip(axes_list, ("coupling torque", "mesh torque"), strict=True):
-        curves = [one for one in event["curves"]["torque"] if one["quantity"] == quantity]
+        curves = [curve for curve in event.curves if curve.quantity == quantity]
         for i, curve in enumerate(curves):
             style = curve_style(i)
             axes.fill_between(
-                time, curve["least"], curve["greatest"], color=style.drawn["color"], alpha=0.35, linewidth=0.0
+                time, curve.least, curve.greatest, color=style.drawn["color"], alpha=0.35, linewidth=0.0
             )
-            middle = [0.5 * (a + b) for a, b in zip(curve["least"], curve["greatest"], strict=True)]
-            axes.plot(time, middle, **style.drawn, label=words(curve["place"]))
+            middle = [0.5 * (a + b) for a, b in zip(curve.least, curve.greatest, strict=True)]
+            axes.plot(time, middle, **style.drawn, label=words(curve.place))
         axes.axhline(0.0, color=MUTED, linewidth=0.6)
-        if event["time_to_trip_s"] is not None:
-            axes.axvline(1e3 * event["time_to_trip_s"], color=INK, linewidth=0.8, linestyle=":", label="trip")
+        if event.tripped is not None:
+            axes.axvline(1e3 * event.tripped, color=INK, linewidth=0.8, linestyle=":", label="trip")
         finish(axes, ylabel=f"{quantity}\n[{unit_text('Nm')}]")
         axes.legend(loc="center right", ncols=3)
     axes_list[-1].set_xlabel("time from the event on [ms]")

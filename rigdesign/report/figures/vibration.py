@@ -26,7 +26,9 @@ from rigdesign.report.palette import (
     CurveStyle,
     curve_style,
 )
-from rigdesign.results.vibration import sense_of_whirl
+from rigdesign.results.lateral import BearingOrbit, LateralVibration
+from rigdesign.results.quantity import value_in_unit
+from rigdesign.results.vibration import HeldSpectrum, Waterfall, sense_of_whirl
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -280,42 +282,42 @@ def _held_lines(axes: "Axes", held: Mapping[str, float]) -> None:
         axes.axvline(speed, color=MUTED, linewidth=0.9, linestyle=(0, (7.0, 1.6, 1.4, 1.6)))
 
 
-def whirl_figure(lateral: Mapping[str, Any], limit: float | None) -> "Figure":
+def whirl_figure(lateral: LateralVibration, limit: float | None) -> "Figure":
     """Orbit (larger half axis, all shaft lines) of every bearing over speed [um], a plot for each gearbox.
 
     limit : most peak-to-peak motion over the diametral clearance
     """
-    curve = lateral["curve"]
-    boxes: dict[str, list[Mapping[str, Any]]] = {}
-    for bearing in curve["bearings"]:
-        boxes.setdefault(BearingName.read(bearing["bearing"]).gearbox, []).append(bearing)
+    boxes: dict[str, list[BearingOrbit]] = {}
+    for bearing in lateral.curve.bearings:
+        boxes.setdefault(BearingName.read(bearing.bearing).gearbox, []).append(bearing)
+    speeds = value_in_unit(lateral.curve, "speed")
     height = 0.5 + 2.4 * len(boxes)
     figure = new_figure(height)
-    held = sorted({stage["speed_rpm"] for stage in lateral["stages"]})
+    held = sorted({value_in_unit(stage, "speed") for stage in lateral.stages})
     for axes, (box, bearings) in zip(
         figure.subplots(len(boxes), 1, squeeze=False)[:, 0], boxes.items(), strict=True
     ):
-        _orbits(axes, curve["speed_rpm"], bearings)
+        _orbits(axes, speeds, bearings)
         _limit(axes, bearings, limit)
         for speed in held:
             axes.axvline(speed, color=MUTED, linewidth=0.8, linestyle=":")
         finish(axes, "speed where the case counts it, n [rpm]", "orbit, 0-peak [µm]", f"Gearbox {words(box)}")
-        axes.set_xlim(0.0, curve["speed_rpm"][-1])
+        axes.set_xlim(0.0, speeds[-1])
         legend_right(axes)
     figure.subplots_adjust(left=0.085, right=0.74, top=1 - 0.32 / height, bottom=0.47 / height, hspace=0.45)
     return figure
 
 
-def _orbits(axes: "Axes", speeds: list[float], bearings: list[Mapping[str, Any]]) -> None:
+def _orbits(axes: "Axes", speeds: Sequence[float], bearings: list[BearingOrbit]) -> None:
     axes.set_yscale("log")
     for number, bearing in enumerate(bearings):
-        name = words(BearingName.read(bearing["bearing"]).part)
-        axes.plot(speeds, bearing["orbit_um"], **curve_style(number).drawn, label=name)
+        name = words(BearingName.read(bearing.bearing).part)
+        axes.plot(speeds, value_in_unit(bearing, "orbit"), **curve_style(number).drawn, label=name)
 
 
-def _limit(axes: "Axes", bearings: list[Mapping[str, Any]], limit: float | None) -> None:
+def _limit(axes: "Axes", bearings: list[BearingOrbit], limit: float | None) -> None:
     """Half of the least clearance of a film, and what of it may be used."""
-    clearances = [bearing["clearance_um"] for bearing in bearings if bearing["clearance_um"]]
+    clearances = [value_in_unit(bearing, "clearance") for bearing in bearings if bearing.clearance]
     if not clearances:
         return
     radial = 0.5 * min(clearances)
@@ -329,7 +331,6 @@ def _limit(axes: "Axes", bearings: list[Mapping[str, Any]], limit: float | None)
 
 # Waterfalls of run-up and run-down, and spectra at the held stages.
 
-Rows = Sequence[Mapping[str, Any]]
 DECADES = 3.0
 """Of the colours, below the highest amplitude."""
 HARMONICS = 4
@@ -337,18 +338,18 @@ HARMONICS = 4
 KHZ = 1e-3
 
 
-def waterfall_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
+def waterfall_figure(rows: Sequence[Waterfall], styles: Mapping[str, CurveStyle]) -> "Figure":
     """A panel for each gearbox: frequency across, speed upwards, amplitude as colour; mesh orders named at the edge."""
     from matplotlib.colors import LogNorm
 
     figure, panels = panels_in_pairs(3.9, len(rows))
     lines = figure.get_figheight() / 3.9
-    top = max(max(map(max, row["amplitude_Nm"])) for row in rows)
+    top = max(max(map(max, row.amplitude)) for row in rows)
     bottom = top * 10.0**-DECADES
     norm = LogNorm(bottom, top)
     for axes, row in zip(panels[:, 0], rows, strict=True):
-        amplitude = np.maximum(np.array(row["amplitude_Nm"]), bottom)
-        speed, frequency = np.array(row["pinion_speed_rpm"]), KHZ * np.array(row["frequency_Hz"])
+        amplitude = np.maximum(np.array(row.amplitude), bottom)
+        speed, frequency = np.array(value_in_unit(row, "speed")), KHZ * np.array(row.frequency)
         image = axes.pcolormesh(
             frequency,
             speed,
@@ -362,9 +363,7 @@ def waterfall_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
         axes.grid(visible=False)
         axes.set(xlim=(0, frequency[-1]), ylim=(speed[0], speed[-1]))
         finish(axes, "frequency [kHz]", "pinion speed n [rpm]")
-        gearbox_title(
-            axes, f"Gearbox {words(row['gearbox'])}, stage {words(row['stage'])}", styles[row["gearbox"]]
-        )
+        gearbox_title(axes, f"Gearbox {words(row.mesh)}, stage {words(row.stage)}", styles[row.mesh])
     figure.subplots_adjust(
         left=0.085, right=0.87, top=1.0 - 0.12 / lines, bottom=0.13 / lines, wspace=0.24, hspace=0.32
     )
@@ -374,11 +373,11 @@ def waterfall_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
     return figure
 
 
-def _mesh_orders(axes: "Axes", row: Mapping[str, Any], last: float) -> None:
+def _mesh_orders(axes: "Axes", row: Waterfall, last: float) -> None:
     """f_z and its multiples: a short mark at the edge they leave the plot by."""
-    low, high = row["pinion_speed_rpm"][0], row["pinion_speed_rpm"][-1]
+    low, *_, high = value_in_unit(row, "speed")
     for harmonic in range(1, HARMONICS + 1):
-        slope = KHZ * harmonic * row["teeth"] / 60.0
+        slope = KHZ * harmonic * row.per_turn / 60.0
         speed = min(high, last / slope)
         if speed <= low:
             continue
@@ -390,39 +389,37 @@ def _mesh_orders(axes: "Axes", row: Mapping[str, Any], last: float) -> None:
         )  # fmt: skip
 
 
-def spectrum_figure(rows: Rows, styles: Mapping[str, CurveStyle]) -> "Figure":
+def spectrum_figure(rows: Sequence[HeldSpectrum], styles: Mapping[str, CurveStyle]) -> "Figure":
     """A panel for each gearbox and held stage: time run as a line, mesh orders of the periodic response as stems."""
     figure = new_figure(0.5 + 2.0 * len(rows))
     panels = figure.subplots(len(rows), 1, squeeze=False)[:, 0]
     for axes, row in zip(panels, rows, strict=True):
-        style = styles[row["gearbox"]]
-        floor = 1e-6 * row["mean_Nm"]
-        if row["order"]:
+        style = styles[row.mesh]
+        floor = 1e-6 * row.mean
+        if row.order:
             axes.plot(
-                row["order"], np.maximum(row["amplitude_Nm"], floor), color=style.colour, linewidth=0.7,
+                row.order, np.maximum(row.amplitude, floor), color=style.colour, linewidth=0.7,
                 label="time run",
             )  # fmt: skip
-        orders, heights = row["mesh_harmonic_order"], row["mesh_harmonic_amplitude_Nm"]
+        orders, heights = row.harmonic_order, row.harmonic_amplitude
         axes.vlines(orders, floor, heights, color=INK, linewidth=1.0)
         axes.plot(orders, heights, "o", color=INK, markersize=2.6, label="periodic response")
         for harmonic in range(1, HARMONICS + 1):
             height = max(
-                (h for o, h in zip(orders, heights, strict=True) if abs(o - harmonic * row["teeth"]) < 0.01),
+                (h for o, h in zip(orders, heights, strict=True) if abs(o - harmonic * row.teeth) < 0.01),
                 default=None,
             )
             if height is not None:
                 axes.annotate(
-                    "f_z" if harmonic == 1 else f"{harmonic} f_z", (harmonic * row["teeth"], height),
+                    "f_z" if harmonic == 1 else f"{harmonic} f_z", (harmonic * row.teeth, height),
                     textcoords="offset points", xytext=(0, 4), ha="center", fontsize=8,
                 )  # fmt: skip
         axes.set_yscale("log")
-        highest = max([*heights, *row["amplitude_Nm"]], default=1.0)
+        highest = max([*heights, *row.amplitude], default=1.0)
         axes.set_ylim(max(floor, 1e-5 * highest), 6.0 * highest)
-        axes.set_xlim(0, (HARMONICS + 0.4) * row["teeth"])
+        axes.set_xlim(0, (HARMONICS + 0.4) * row.teeth)
         finish(axes, "", f"amplitude [{unit_text('Nm')}]")
-        title = (
-            f"Gearbox {words(row['gearbox'])}, stage {words(row['stage'])}, {row['pinion_speed_rpm']:.0f} rpm"
-        )
+        title = f"Gearbox {words(row.mesh)}, stage {words(row.stage)}, {value_in_unit(row, 'speed'):.0f} rpm"
         gearbox_title(axes, title, style)
         axes.tick_params(colors=MUTED)
     panels[0].legend(loc="upper right", ncols=2)

@@ -15,6 +15,7 @@ from rigdesign.report.figures.drawing import NumberedFigures, drawing_style
 from rigdesign.report.input_sheets import Issue, signatures
 from rigdesign.report.sections import SECTIONS
 from rigdesign.report.sections.section import ReportSection
+from rigdesign.results.quantity import row, value_in_unit
 from rigdesign.results.result import RunResult
 
 if TYPE_CHECKING:
@@ -117,6 +118,8 @@ def environment() -> "Environment":
         percent=numbers.percent_text,
         heading=numbers.heading_text,
         cell=numbers.cell_text,
+        row=row,
+        unit_value=value_in_unit,
         words=lambda text: str(text).replace("_", " "),
         signs=signs,
         symbol=symbol,

@@ -1,10 +1,12 @@
 """Ramp, dynamic factor, root stress, resonances."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rigdesign.report.sections.section import Draw, ReportSection, Values, gearbox_styles
 from rigdesign.results.dynamics import GearboxDynamics
+from rigdesign.results.loads import HeldBracing
+from rigdesign.results.quantity import row
 from rigdesign.results.result import RunResult
 
 if TYPE_CHECKING:
@@ -54,7 +56,16 @@ def _details(result: RunResult, draw: Draw) -> Values:
     return {
         "root_stress": _root_stress(result, draw, rest),
         "contact": _contact(result, draw, rest),
+        "bracing": [_bracing(held) for held in result.dynamics.bracing],
     }
+
+
+def _bracing(held: HeldBracing) -> dict[str, Any]:
+    """Warm, and as drawn what differs."""
+    shown = row(held)
+    as_drawn = {key: shown.pop(key) for key in list(shown) if "as_drawn" in key}
+    first, *others = as_drawn.items()
+    return shown | dict((first, ("torque_warm_Nm", shown["torque_Nm"]), *others))
 
 
 def _root_stress(result: RunResult, draw: Draw, names: Sequence[str]) -> "dict[str, Markup]":

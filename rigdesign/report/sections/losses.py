@@ -1,25 +1,36 @@
 """Losses by stage and place, oil and its circuits, heat of the whole rig."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rigdesign.report import views
 from rigdesign.report.sections.section import Draw, ReportSection, Values
+from rigdesign.results.housing import (
+    CircuitBalance,
+    CircuitDevice,
+    CircuitLine,
+    CoolingBalance,
+    RigHeat,
+    RoomTemperature,
+    Sink,
+)
+from rigdesign.results.quantity import row
 from rigdesign.results.result import RunResult
+from rigdesign.results.units import KW
 
 if TYPE_CHECKING:
     from markupsafe import Markup
 
-POWERS = ("heater_W", "cooler_W", "pump_W", "machines_W", "room_W")
-COLUMNS = {
-    "power_W": "heat [W]",
-    "room_W": "to the room [W]",
-    "oil_W": "into the oil [W]",
-    "water_W": "cooling water [W]",
-    "stored_W": "stored [W]",
-    "no_heat_W": "no heat [W]",
+COLUMNS: Mapping[Sink, str] = {
+    "room": "to the room [W]",
+    "oil": "into the oil [W]",
+    "water": "cooling water [W]",
+    "stored": "stored [W]",
+    "no_heat": "no heat [W]",
 }
-ALWAYS = ("power_W", "room_W", "oil_W")
+ALWAYS = ("room", "oil")
+SOMETIMES = ("stored", "circulation", "tanks", "streams", "volumes", "machines")
+"""Terms of the heat balance of a rig that not every rig has."""
 
 
 def _losses(result: RunResult, draw: Draw) -> Values:
@@ -34,8 +45,32 @@ def _losses(result: RunResult, draw: Draw) -> Values:
         "losses_by_stage": by_stage,
         "rig_flow": _rig_flow(result, oil_stage, draw),
         "flow_stage": oil_stage,
-        "oil_rows": [row for row in result.oil if row.stage == oil_stage],
+        "balances": _balances(result.cooler),
+        "volumes": any(balance.volumes is not None for balance in result.cooler[:1]),
+        "streams": any(balance.streams is not None for balance in result.cooler[:1]),
+        "oil_rows": [oil for oil in result.oil if oil.stage == oil_stage],
     }
+
+
+def _balances(balances: Sequence[CoolingBalance]) -> list[dict[str, Any]]:
+    """Rows of the heat balance, with the terms that the rig has."""
+    terms = [name for name in SOMETIMES if any(getattr(balance, name) is not None for balance in balances)]
+    return [
+        row(
+            balance,
+            "stage",
+            "losses",
+            "pump",
+            "heater",
+            "cooler",
+            "room",
+            *terms,
+            "not_heat",
+            "imbalance",
+            "flow",
+        )
+        for balance in balances
+    ]
 
 
 def _details(result: RunResult, draw: Draw) -> Values:
@@ -57,7 +92,7 @@ def _details(result: RunResult, draw: Draw) -> Values:
 
 def _oil_stage(result: RunResult, stage: str) -> str:
     """The stage with the most heat, or the first that has oil rows."""
-    stages = [row.stage for row in result.oil]
+    stages = [oil.stage for oil in result.oil]
     return stage if stage in stages else next(iter(stages), "")
 
 
@@ -65,11 +100,11 @@ def _rig_flow(result: RunResult, stage: str, draw: Draw) -> "Markup | None":
     """Heat of the rig at its main held stage."""
     from rigdesign.report.figures.flow import rig_flow_figure
 
-    balance = next((row for row in result.cooler if row["stage"] == stage), None)
+    balance = next((balance for balance in result.cooler if balance.stage == stage), None)
     if balance is None:
         return None
-    losses = [row for row in result.losses if row.stage == stage]
-    figure = rig_flow_figure(losses, [row for row in result.oil if row.stage == stage], balance)
+    losses = [loss for loss in result.losses if loss.stage == stage]
+    figure = rig_flow_figure(losses, [oil for oil in result.oil if oil.stage == stage], balance)
     if figure is None:
         return None
     return draw(figure, f"Heat of the rig from losses to cooler and room at stage {stage}")
@@ -83,54 +118,48 @@ LOSS_DETAILS = ReportSection(
 
 
 def _tables(result: RunResult, draw: Draw) -> Values:
-    rows = result.oil_circuits
+    circuits = result.oil_circuits
     return {
-        "tanks": [_tank(row) for row in rows],
-        "lines": [_line(row, line) for row in rows for line in row["lines"]],
-        "devices": [device for row in rows for device in _devices(row)],
+        "tanks": [_tank(circuit) for circuit in circuits],
+        "lines": [_line(circuit, line) for circuit in circuits for line in circuit.lines],
+        "devices": [_device(circuit, device) for circuit in circuits for device in circuit.devices],
     }
 
 
-def _tank(row: Mapping[str, Any]) -> dict[str, Any]:
-    powers = {key.replace("_W", "_kW"): 1e-3 * row[key] for key in POWERS}
+def _tank(circuit: CircuitBalance) -> dict[str, Any]:
     return {
-        "circuit": _words(row["circuit"]),
-        "stage": row["stage"],
-        "tank_degC": row["tank_degC"],
-        "flow_l_min": row["flow_l_min"],
-    } | powers
-
-
-def _line(row: Mapping[str, Any], line: Mapping[str, Any]) -> dict[str, Any]:
-    held = None
-    if line["setpoint_degC"] is not None:
-        held = abs(line["supply_degC"] - line["setpoint_degC"]) <= line["tolerance_K"]
-    return {
-        "circuit": _words(row["circuit"]),
-        "line": _words(line["line"]),
-        "stage": row["stage"],
-        "flow_l_min": line["flow_l_min"],
-        "setpoint_degC": line["setpoint_degC"],
-        "supply_degC": line["supply_degC"],
-        "held": held,
-        "drain_degC": line["drain_degC"],
-        "back_in_the_tank_degC": line["back_degC"],
-        "heat_of_the_consumers_kW": 1e-3 * line["heat_W"],
+        "circuit": _words(circuit.circuit),
+        **row(circuit, "stage", "tank", "flow"),
+        **{
+            f"{key}_kW": KW * getattr(circuit, key)
+            for key in ("heater", "cooler", "pump", "machines", "room")
+        },
     }
 
 
-def _devices(row: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    for device in row["devices"]:
-        limit = device["capability_W"]
-        yield {
-            "circuit": _words(row["circuit"]),
-            "device": _words(device["device"]),
-            "stage": row["stage"],
-            "power_kW": 1e-3 * device["power_W"],
-            "needed_for_its_setpoint_kW": 1e-3 * device["needed_W"],
-            "most_kW": 1e-3 * limit,
-            "used": f"{100.0 * device['needed_W'] / limit:.0f} %" if limit else None,
-        }
+def _line(circuit: CircuitBalance, line: CircuitLine) -> dict[str, Any]:
+    return {
+        "circuit": _words(circuit.circuit),
+        "line": _words(line.line),
+        "stage": circuit.stage,
+        **row(line, "flow", "setpoint", "supply"),
+        "held": line.holds,
+        **row(line, "drain", "back"),
+        "heat_of_the_consumers_kW": KW * line.heat,
+    }
+
+
+def _device(circuit: CircuitBalance, device: CircuitDevice) -> dict[str, Any]:
+    most = device.capability
+    return {
+        "circuit": _words(circuit.circuit),
+        "device": _words(device.device),
+        "stage": circuit.stage,
+        "power_kW": KW * device.power,
+        "needed_for_its_setpoint_kW": KW * device.needed,
+        "most_kW": KW * most,
+        "used": f"{100.0 * device.needed / most:.0f} %" if most else None,
+    }
 
 
 def _words(name: str) -> str:
@@ -146,46 +175,44 @@ OIL_CIRCUITS = ReportSection(
 def _heat(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures.heat import rig_heat_figure
 
-    rows = result.rig_heat
-    main = next((row for row in rows if row["stage"] == views.main_stage(result)), rows[-1])
-    sources = main["sources"]
-    used = [key for key in COLUMNS if key in ALWAYS or any(source[key] for source in sources)]
+    stages = result.rig_heat
+    main = next((heat for heat in stages if heat.stage == views.main_stage(result)), stages[-1])
+    used = [
+        sink for sink in COLUMNS if sink in ALWAYS or any(source.sinks.get(sink) for source in main.sources)
+    ]
     return {
         "main": main,
-        "figure": draw(rig_heat_figure(main), f"Heat of the whole rig by source and sink at stage {main['stage']}"),
-        "columns_shown": {key: COLUMNS[key] for key in used},
-        "sums": {key: sum(source[key] for source in sources) for key in used},
-        "powers": [_powers(row) for row in rows],
-        "rooms": [_room(row) for row in rows if row["room"] is not None],
+        "figure": draw(rig_heat_figure(main), f"Heat of the whole rig by source and sink at stage {main.stage}"),
+        "heads": ["heat [W]", *(COLUMNS[sink] for sink in used)],
+        "sources": [
+            (source, [source.power, *(source.sinks.get(sink, 0.0) for sink in used)]) for source in main.sources
+        ],
+        "sums": [sum(source.power for source in main.sources), *(main.into(sink) for sink in used)],
+        "powers": [_powers(heat) for heat in stages],
+        "rooms": [_room(heat.stage, heat.room) for heat in stages if heat.room is not None],
     }  # fmt: skip
 
 
-def _powers(row: dict[str, Any]) -> dict[str, Any]:
-    total = {key: sum(source[key] for source in row["sources"]) for key in ("room_W", "oil_W", "water_W")}
-    kilowatts = {key.replace("_W", "_kW"): 1e-3 * value for key, value in total.items()}
+def _powers(heat: RigHeat) -> dict[str, Any]:
     return {
-        "stage": row["stage"],
-        "at_the_rig_kW": 1e-3 * row["drive_power_W"],
-        "from_the_mains_kW": 1e-3 * row["mains_power_W"],
-        "with_pumps_and_heaters_kW": 1e-3 * row["input_power_W"],
-        "to_the_room_kW": kilowatts["room_kW"],
-        "into_the_oil_kW": kilowatts["oil_kW"],
-        "cooling_water_kW": kilowatts["water_kW"],
-        "imbalance_W": row["open_W"],
+        "stage": heat.stage,
+        "at_the_rig_kW": KW * heat.drive_power,
+        "from_the_mains_kW": KW * heat.mains_power,
+        "with_pumps_and_heaters_kW": KW * heat.input_power,
+        "to_the_room_kW": KW * heat.into("room"),
+        "into_the_oil_kW": KW * heat.into("oil"),
+        "cooling_water_kW": KW * heat.into("water"),
+        **row(heat, "imbalance"),
     }
 
 
-def _room(row: dict[str, Any]) -> dict[str, Any]:
-    room = row["room"]
+def _room(stage: str, room: RoomTemperature) -> dict[str, Any]:
     return {
-        "stage": row["stage"],
-        "heat_kW": 1e-3 * room["heat_W"],
-        "by_air_kW": 1e-3 * room["by_air_W"],
-        "by_walls_kW": 1e-3 * room["by_walls_W"],
-        "temperature_degC": room["temperature_degC"],
-        "limit_degC": room["limit_degC"],
-        "air_flow_m3_h": room["air_flow_m3_h"],
-        "air_flow_that_holds_the_limit_m3_h": room["needed_air_flow_m3_h"],
+        "stage": stage,
+        "heat_kW": KW * room.heat,
+        "by_air_kW": KW * room.by_air,
+        "by_walls_kW": KW * room.by_walls,
+        **row(room, "temperature", "limit", "air_flow", "needed_air_flow"),
     }
 
 

@@ -1,24 +1,27 @@
 """Shafts and their bearings: lateral vibration; loads, friction, temperatures and life of rolling bearings."""
 
+import math
 from typing import Any
 
 from rigdesign.report.sections.section import Draw, ReportSection, Values
+from rigdesign.results.lateral import StageLateral
+from rigdesign.results.quantity import row, value_in_unit
 from rigdesign.results.result import RunResult
 
 HIGHEST_RATIO = 3.0
 """Modes are shown up to this times the fastest shaft, at least the lowest few."""
 LEAST_MODES = 6
 LOADS = (
-    "bearing", "stage", "designation", "radial_load_N", "axial_load_N", "minimum_load_N", "speed_rpm",
-    "speed_utilisation", "static_safety", "basic_life_h", "modified_life_h", "viscosity_ratio",
+    "bearing", "stage", "designation", "radial_load", "axial_load", "minimum_load", "speed", "speed_utilisation",
+    "static_safety", "basic_life", "modified_life", "viscosity_ratio",
 )  # fmt: skip
 FRICTION = (
-    "bearing", "stage", "rolling_torque_Nm", "sliding_torque_Nm", "seal_torque_Nm", "drag_torque_Nm", "friction_W",
-    "heat_to_shaft_W", "heat_to_housing_W",
+    "bearing", "stage", "rolling_torque", "sliding_torque", "seal_torque", "drag_torque", "friction", "heat_to_shaft",
+    "heat_to_housing",
 )  # fmt: skip
 WARM = (
-    "bearing", "stage", "temperature_degC", "inner_ring_degC", "outer_ring_degC", "operating_clearance_um",
-    "radial_stiffness_N_um", "axial_stiffness_N_um", "tilting_stiffness_kNm_rad",
+    "bearing", "stage", "temperature", "inner_ring", "outer_ring", "operating_clearance", "radial_stiffness",
+    "axial_stiffness", "tilting_stiffness",
 )  # fmt: skip
 
 
@@ -29,32 +32,42 @@ def _values(result: RunResult, draw: Draw) -> Values:
     assert lateral is not None
     limits = {check.id: check.limit for check in result.checks}
     return {
-        "modes": [row for stage in lateral["stages"] for row in _modes(stage)],
+        "modes": [mode for stage in lateral.stages for mode in _modes(stage)],
         "bearings": [
             {
-                "bearing": row["bearing"],
-                "stage": stage["stage"],
-                **{k: v for k, v in row.items() if k != "bearing"},
+                "bearing": bearing.bearing,
+                "stage": stage.stage,
+                **row(
+                    bearing,
+                    "shaft",
+                    "amplitude",
+                    "minor",
+                    "clearance",
+                    "clearance_share",
+                    "force",
+                    "static_load",
+                ),
             }
-            for stage in lateral["stages"]
-            for row in stage["bearings"]
+            for stage in lateral.stages
+            for bearing in stage.bearings
         ],
-        "seats": lateral["seats"],
+        "seats": [row(seat) for seat in lateral.seats],
         "seals": [
-            {"seal": row["seal"], "stage": stage["stage"], "shaft": row["shaft"], "orbit_um": row["orbit_um"]}
-            for stage in lateral["stages"]
-            for row in stage["seals"]
+            {"seal": seal.seal, "stage": stage.stage, **row(seal, "shaft", "amplitude")}
+            for stage in lateral.stages
+            for seal in stage.seals
         ],
         "meshes": [
             {
-                "mesh": row["mesh"],
-                "stage": stage["stage"],
-                "line": row["line"],
-                "force_N": row["force_N"],
-                "share": row["share"],
+                "mesh": mesh.mesh,
+                "stage": stage.stage,
+                "line": line,
+                "force_N": force,
+                "share": mesh.share([line]) if mesh.mean else None,
             }
-            for stage in lateral["stages"]
-            for row in stage["meshes"]
+            for stage in lateral.stages
+            for mesh in stage.meshes
+            for line, force in mesh.forces.items()
         ],
         "whirl_figure": draw(
             whirl_figure(lateral, limits.get("lateral.orbit")),
@@ -63,26 +76,27 @@ def _values(result: RunResult, draw: Draw) -> Values:
     }
 
 
-def _modes(stage: dict[str, Any]) -> list[dict[str, Any]]:
+def _modes(stage: StageLateral) -> list[dict[str, Any]]:
     """Lateral and torsional modes of a stage, the lowest first."""
-    listed = [mode for mode in stage["modes"] if mode["family"] in ("lateral", "torsion")]
-    highest = HIGHEST_RATIO * stage["speed_rpm"] / 60.0
-    near = [mode for mode in listed if mode["frequency_Hz"] <= highest]
-    shown = near if len(near) >= LEAST_MODES else listed[:LEAST_MODES]
-    return [
-        {
-            "mode": mode["mode"],
-            "stage": stage["stage"],
-            "torque": stage["torque"],
-            "frequency_Hz": mode["frequency_Hz"],
-            "logarithmic_decrement": mode["logarithmic_decrement"],
-            "amplification": mode["amplification"],
-            "margin": mode["margin"],
-            "required_margin": mode["required_margin"],
-            "rigid_body": mode["rigid_body"],
-        }
-        for mode in shown
-    ]
+    listed = [(i, mode) for i, mode in enumerate(stage.modes) if mode.family in ("lateral", "torsion")]
+    highest = HIGHEST_RATIO * value_in_unit(stage, "speed") / 60.0
+    near = [(i, mode) for i, mode in listed if mode.frequency <= highest]
+    rows = []
+    for number, mode in near if len(near) >= LEAST_MODES else listed[:LEAST_MODES]:
+        against = stage.separation_of(number)
+        rows.append(
+            {
+                "mode": mode.name,
+                "stage": stage.stage,
+                "torque": stage.torque,
+                **row(mode, "frequency", "logarithmic_decrement"),
+                "amplification": mode.amplification if math.isfinite(mode.amplification) else None,
+                "margin": None if against is None else against.margin,
+                "required_margin": None if against is None else against.required,
+                "rigid_body": stage.as_rigid_body(mode),
+            }
+        )
+    return rows
 
 
 LATERAL = ReportSection(
@@ -93,7 +107,7 @@ LATERAL = ReportSection(
 
 def _tables(result: RunResult, draw: Draw) -> Values:
     return {
-        name: [{key: row[key] for key in keys} for row in result.rolling_bearings]
+        name: [row(bearing, *keys) for bearing in result.rolling_bearings]
         for name, keys in (("loads", LOADS), ("friction", FRICTION), ("warm", WARM))
     }
 

@@ -47,11 +47,11 @@ def _events(result: RunResult, draw: Draw) -> Values:
 
     return {
         "event_figures": {
-            event["name"]: draw(
-                event_figure(event), f"Torque in couplings and meshes over the event {event['name']}"
+            event.name: draw(
+                event_figure(event), f"Torque in couplings and meshes over the event {event.name}"
             )
             for event in result.events
-            if event["curves"]["time_s"]
+            if event.time
         }
     }
 

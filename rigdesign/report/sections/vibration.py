@@ -1,7 +1,8 @@
 """Vibration of the power circuit: modes over speed, dynamic torque, and at which speeds the rig may dwell."""
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from rigdesign.report.sections.section import Draw, ReportSection, Values, gearbox_styles
 from rigdesign.results.result import RunResult
@@ -80,26 +81,21 @@ def _in_motion(result: RunResult, draw: Draw) -> Values:
     dynamics = result.dynamics
     assert dynamics is not None
     styles = gearbox_styles(result)
-    stages = dict.fromkeys(row["stage"] for row in dynamics.waterfalls)
-    figures = {
-        "spectrum_figure": (
-            spectrum_figure,
-            dynamics.spectra,
-            "Spectrum of the mesh torque at the held stages",
-        ),
-        "share_figure": (
-            pair_share_figure,
-            dynamics.pair_shares,
-            "Share of a tooth pair over the rolling angle",
-        ),
-    }
-    shown: Values = {
-        name: draw(figure(rows, styles), text) if rows else None
-        for name, (figure, rows, text) in figures.items()
-    }
+    stages = dict.fromkeys(waterfall.stage for waterfall in dynamics.waterfalls)
+    shown: Values = {"spectrum_figure": None, "share_figure": None}
+    if dynamics.spectra:
+        shown["spectrum_figure"] = draw(
+            spectrum_figure(dynamics.spectra, styles), "Spectrum of the mesh torque at the held stages"
+        )
+    if dynamics.pair_shares:
+        shown["share_figure"] = draw(
+            pair_share_figure(dynamics.pair_shares, styles), "Share of a tooth pair over the rolling angle"
+        )
     shown["waterfall_figures"] = {
         stage: draw(
-            waterfall_figure([row for row in dynamics.waterfalls if row["stage"] == stage], styles),
+            waterfall_figure(
+                [waterfall for waterfall in dynamics.waterfalls if waterfall.stage == stage], styles
+            ),
             f"Spectrum of the mesh torque over speed in stage {stage}",
         )
         for stage in stages
@@ -163,12 +159,23 @@ def _run_torques(rows: list[dict[str, Any]]) -> list[tuple[dict[str, Any], dict[
     ]
 
 
-def least_safe(rows: list[dict[str, Any]], *keys: str) -> list[dict[str, Any]]:
-    """Of the rows that agree in some keys that with the least safety; a row without torque is the safest."""
-    found: dict[tuple[Any, ...], dict[str, Any]] = {}
-    for row in sorted(rows, key=lambda row: math.inf if row["safety"] is None else float(row["safety"])):
-        found.setdefault(tuple(row[key] for key in keys), row)
-    return sorted(found.values(), key=rows.index)
+class Rated(Protocol):
+    """A record with a safety."""
+
+    @property
+    def safety(self) -> float | None:
+        """None without torque or stress."""
+
+
+R = TypeVar("R", bound=Rated)
+
+
+def least_safe(records: Sequence[R], *names: str) -> list[R]:
+    """Of the records that agree in some values that with the least safety; one without torque is the safest."""
+    found: dict[tuple[object, ...], R] = {}
+    for record in sorted(records, key=lambda record: math.inf if record.safety is None else record.safety):
+        found.setdefault(tuple(getattr(record, name) for name in names), record)
+    return sorted(found.values(), key=records.index)
 
 
 def _turns(result: RunResult) -> bool:

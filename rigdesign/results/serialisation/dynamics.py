@@ -1,70 +1,12 @@
 """Dynamic loads as rows of the result."""
 
 import math
-from typing import Any
 
 from dynamics.gear.pair import GearPair
-from dynamics.rotor.torsional_modes import DampingRecord, LoopMode
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.results.dynamics import RootStressHistory
-from rigdesign.results.loads import (
-    ContactLoss,
-    MeshResonance,
-    ModeCrossing,
-    RootStressPath,
-    RootStressRatio,
-    StageBracing,
-    StageLoad,
-    UnsolvedSpeed,
-)
-from rigdesign.results.units import MM, MPA, RPM
-
-
-def stage_load_row(load: StageLoad) -> dict[str, Any]:
-    """Load of one mesh in one stage."""
-    return {
-        "stage": load.stage,
-        "dynamic_factor": load.dynamic_factor,
-        "speed_rpm": load.speed * RPM,
-        "mean_Nm": load.mean,
-        "peak_Nm": load.peak,
-        "least_Nm": load.least,
-        "least_share": load.least_share,
-        "least_share_at_rpm": load.least_share_speed * RPM,
-        "least_share_mean_Nm": load.least_share_mean,
-    }
-
-
-def contact_loss_row(loss: ContactLoss) -> dict[str, Any]:
-    """An interval in which a mesh kept losing contact."""
-    return {
-        "stage": loss.stage,
-        "start_s": loss.start,
-        "end_s": loss.end,
-        "share": loss.share,
-        "longest_gap_ms": 1e3 * loss.longest_gap,
-    }
-
-
-def resonance_row(resonance: MeshResonance) -> dict[str, Any]:
-    """A resonance of one mesh."""
-    return {
-        "torque": resonance.torque,
-        "mode": resonance.mode,
-        "frequency_Hz": resonance.frequency,
-        "harmonic": resonance.harmonic,
-        "speed_rpm": resonance.speed * RPM,
-        "dynamic_factor": resonance.dynamic_factor,
-        "force_share": resonance.force_share,
-        "amplification": resonance.amplification,
-        "at_end": resonance.at_end,
-        "dangerous": resonance.dangerous,
-    }
-
-
-def unsolved_row(unsolved: UnsolvedSpeed) -> dict[str, Any]:
-    """A speed without a periodic response."""
-    return {"curve": unsolved.curve, "speed_rpm": unsolved.speed * RPM, "reason": unsolved.reason}
+from rigdesign.results.loads import RootStressPath
+from rigdesign.results.units import MM, MPA
 
 
 def root_stress_row(path: RootStressPath) -> RootStressHistory:
@@ -77,69 +19,6 @@ def root_stress_row(path: RootStressPath) -> RootStressHistory:
         quasi_static_MPa=[stress * MPA for stress in path.quasi_static],
         source=path.source,
     )
-
-
-def root_ratio_row(ratio: RootStressRatio) -> dict[str, float]:
-    """Dynamic over quasi-static root stress at one speed."""
-    return {"speed_rpm": ratio.speed * RPM, "pinion": ratio.pinion, "wheel": ratio.wheel}
-
-
-def mode_row(number: int, mode: LoopMode) -> dict[str, Any]:
-    """A mode of the closed loop."""
-    return {
-        "mode": number,
-        "frequency_Hz": mode.frequency,
-        "damping_ratio": mode.damping_ratio,
-        "shape": mode.name,
-        "largest_at": mode.largest,
-    }
-
-
-def mode_crossing_row(crossing: ModeCrossing) -> dict[str, Any]:
-    """An order that meets a mode of the closed loop."""
-    return {
-        "kind": crossing.kind,
-        "order_of": crossing.order_of,
-        "mode": crossing.mode,
-        "shape": crossing.shape,
-        "frequency_Hz": crossing.frequency,
-        "damping_ratio": crossing.damping_ratio,
-        "harmonic": crossing.harmonic,
-        "speed_rpm": crossing.speed * RPM,
-        "gain": crossing.gain,
-    }
-
-
-def damping_row(record: DampingRecord) -> dict[str, Any]:
-    """Damping of one joint or mesh; a joint without damping has no corner frequency."""
-    corner = record.corner_frequency
-    return {
-        "joint": record.name,
-        "kind": record.kind,
-        "damping_ratio": record.damping_ratio,
-        "corner_frequency_Hz": corner if math.isfinite(corner) else None,
-        "own_frequency_Hz": record.own_frequency,
-        "warning": record.warning,
-    }
-
-
-def bracing_row(bracing: StageBracing) -> dict[str, Any]:
-    """Bracing of one held stage, as set and warm."""
-    warm, as_set = bracing.drift.warm, bracing.drift.initial
-    return {
-        "stage": bracing.stage,
-        "mode": warm.mode,
-        "torque_Nm": float(warm.torque[0]),
-        "twist_deg": math.degrees(warm.twist),
-        "axial_shift_mm": MM * warm.shift,
-        "half_gear_rotation_deg": math.degrees(warm.rotation),
-        "actuator_force_N": warm.actuator_force,
-        "spline_friction_N": warm.friction_force,
-        "loop_stiffness_kNm_rad": 1e-3 * warm.loop_stiffness,
-        "torque_cold_Nm": float(as_set.torque[0]),
-        "torque_hot_Nm": float(warm.torque[0]),
-        "axial_shift_cold_mm": MM * as_set.shift,
-    }
 
 
 def _diameters(radii: tuple[float, float]) -> str:

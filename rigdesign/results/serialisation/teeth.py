@@ -9,7 +9,6 @@ from dynamics.gear.pair import GearPair
 from dynamics.tooth.mesh_cycle import ContactPattern
 from dynamics.tooth.root_field import RootCourse
 from rigdesign.results.dynamics import ToothTurnHistory
-from rigdesign.results.loads import PressFitCapacity, SplineStress
 from rigdesign.results.teeth import (
     DynamicRootCurve,
     DynamicRootRecord,
@@ -17,7 +16,6 @@ from rigdesign.results.teeth import (
     FlankRating,
     GaugeStress,
     LoadedContact,
-    PairShare,
     ToothHistory,
 )
 from rigdesign.results.units import MM, MPA, RPM, UM, ZERO
@@ -126,22 +124,6 @@ def _root(course: RootCourse, base: float, turn: float, sense: float) -> dict[st
         "largest_MPa": MPA * course.highest,
         "at_face_mm": sense * MM * float(course.face[face]),
         "stress_ratio": course.stress_ratio,
-    }
-
-
-def pair_share_row(found: PairShare) -> dict[str, Any]:
-    """Shares over the rolling angle of the pinion, line load over the face where a pair carries most."""
-    return {
-        "gearbox": found.mesh,
-        "stage": found.stage,
-        "rolling_angle_deg": [math.degrees(angle) for angle in found.angle],
-        "share": list(found.share),
-        "share_quasi_static": list(found.static_share),
-        "force_over_mean": list(found.force),
-        "most_loaded_angle_deg": math.degrees(found.most_loaded),
-        "face_mm": [1e3 * place for place in found.face],
-        "line_load_N_mm": [1e-3 * load for load in found.line_load],
-        "line_load_quasi_static_N_mm": [1e-3 * load for load in found.static_line_load],
     }
 
 
@@ -256,39 +238,4 @@ def _curve(curve: DynamicRootCurve) -> dict[str, Any]:
         "strain_um_m": [strain * MICRO for strain in curve.strain],
         "strain_rate_per_s": list(curve.strain_rate),
         "source": curve.source,
-    }
-
-
-# Press fits and splines as rows of the result.
-
-
-def press_fit_row(found: PressFitCapacity) -> dict[str, Any]:
-    """Interference, pressure, torques."""
-    return {
-        "gear": found.gear,
-        "where": found.where,
-        "stage": found.stage,
-        "interference_um": UM * found.interference,
-        "interference_hot_um": UM * found.interference_hot,
-        "gear_degC": found.gear_temperature - ZERO,
-        "shaft_degC": found.shaft_temperature - ZERO,
-        "pressure_at_rest_MPa": MPA * found.pressure_at_rest,
-        "pressure_MPa": MPA * found.pressure,
-        "friction": found.friction,
-        "slip_torque_Nm": found.slip_torque,
-        "peak_torque_Nm": found.peak_torque,
-        "safety": found.safety,
-    }
-
-
-def spline_stress_row(found: SplineStress) -> dict[str, Any]:
-    """Torque, stress and what is allowed."""
-    return {
-        "gear": found.gear,
-        "where": found.where,
-        "kind": found.kind,
-        "torque_Nm": found.torque,
-        "stress_MPa": MPA * found.stress,
-        "allowable_MPa": MPA * found.allowable,
-        "safety": found.safety,
     }

@@ -1,29 +1,21 @@
-"""Modes, torques, spectra and speeds to avoid as rows of the result."""
+"""Modes, torques and speeds to avoid as rows of the result."""
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
-from dynamics.rotor.damped_modes import RigMode
-from rigdesign.results.lateral import BearingWhirl, LateralVibration, Separation, StageLateral
-from rigdesign.results.units import MM, MPA, RPM, UM
+from rigdesign.results.units import MM, MPA, RPM
 from rigdesign.results.vibration import (
     AvoidedBand,
     AvoidedResonance,
     CampbellRecord,
     DwellRecord,
     DwellStage,
-    HeldSpectrum,
     HeldTorque,
     RunTorque,
     SectionTorqueRecord,
     TorquePlace,
     TorqueSwing,
-    Waterfall,
 )
-
-DIGITS = 4
-"""Significant digits of the amplitudes of a waterfall: it is looked at, not computed with."""
 
 
 def campbell_row(record: CampbellRecord) -> dict[str, Any]:
@@ -124,33 +116,6 @@ def _columns(swings: Sequence[TorqueSwing]) -> dict[str, list[float]]:
     }
 
 
-def waterfall_row(found: Waterfall) -> dict[str, Any]:
-    """Amplitudes by speed and frequency."""
-    return {
-        "gearbox": found.mesh,
-        "stage": found.stage,
-        "pinion_speed_rpm": [speed * RPM for speed in found.speed],
-        "frequency_Hz": list(found.frequency),
-        "amplitude_Nm": [[float(f"{value:.{DIGITS}g}") for value in row] for row in found.amplitude],
-        "teeth": found.per_turn,
-    }
-
-
-def spectrum_row(found: HeldSpectrum) -> dict[str, Any]:
-    """Amplitudes over the order of the pinion."""
-    return {
-        "gearbox": found.mesh,
-        "stage": found.stage,
-        "pinion_speed_rpm": found.speed * RPM,
-        "mean_Nm": found.mean,
-        "teeth": found.teeth,
-        "order": list(found.order),
-        "amplitude_Nm": list(found.amplitude),
-        "mesh_harmonic_order": list(found.harmonic_order),
-        "mesh_harmonic_amplitude_Nm": list(found.harmonic_amplitude),
-    }
-
-
 def dwell_row(record: DwellRecord) -> dict[str, Any]:
     """Bands, what is left, stages, recommended ramp."""
     return {
@@ -213,94 +178,4 @@ def _stage(stage: DwellStage) -> dict[str, Any]:
         "distance": None if stage.near is None else stage.near.distance,
         "above_limit": stage.above_limit,
         "loses_contact_at_start_torque": stage.loses_contact,
-    }
-
-
-# Lateral vibration as rows of the result.
-
-PER_UM = 1e-6
-"""N/um in a N/m."""
-
-
-def lateral_row(found: LateralVibration) -> dict[str, Any]:
-    """All stages and the whirl over speed; what has no end is None."""
-    return {
-        "stages": [_lateral_stage(stage) for stage in found.stages],
-        "seats": [
-            {
-                "bearing": seat.bearing,
-                "lateral_N_um": seat.lateral * PER_UM,
-                "vertical_N_um": seat.vertical * PER_UM,
-                "axial_N_um": None if seat.axial is None else seat.axial * PER_UM,
-            }
-            for seat in found.seats
-        ],
-        "curve": {
-            "speed_rpm": [RPM * at.speed for at in found.curve],
-            "bearings": [
-                {
-                    "bearing": first.bearing,
-                    "orbit_um": [UM * at.bearings[i].amplitude for at in found.curve],
-                    "clearance_um": None if first.clearance is None else UM * first.clearance,
-                }
-                for i, first in enumerate(found.curve[0].bearings if found.curve else ())
-            ],
-        },
-    }
-
-
-def _lateral_stage(stage: StageLateral) -> dict[str, Any]:
-    margins = {id(one.mode): one for one in stage.separations}
-    for one in reversed(stage.torsional):
-        margins[id(one.mode)] = one
-    return {
-        "stage": stage.stage,
-        "torque": stage.torque,
-        "speed_rpm": RPM * stage.speed,
-        "meshes": [
-            {
-                "mesh": mesh.mesh,
-                "line": line,
-                "force_N": force,
-                "share": force / mesh.mean if mesh.mean else None,
-            }
-            for mesh in stage.meshes
-            for line, force in mesh.forces.items()
-        ],
-        "modes": [
-            _mode(mode, margins.get(id(mode))) | {"rigid_body": stage.as_rigid_body(mode)}
-            for mode in stage.modes
-        ],
-        "bearings": [_bearing(bearing) for bearing in stage.bearings],
-        "seals": [
-            {"seal": seal.seal, "shaft": seal.shaft, "orbit_um": UM * seal.amplitude} for seal in stage.seals
-        ],
-    }
-
-
-def _mode(mode: RigMode, against: Separation | None) -> dict[str, Any]:
-    finite = math.isfinite(mode.amplification)
-    return {
-        "mode": mode.name,
-        "family": mode.family,
-        "shaft": mode.shaft,
-        "frequency_Hz": mode.frequency,
-        "logarithmic_decrement": mode.logarithmic_decrement,
-        "amplification": mode.amplification if finite else None,
-        "whirl": mode.whirl,
-        "margin": None if against is None else against.margin,
-        "required_margin": None if against is None else against.required,
-    }
-
-
-def _bearing(bearing: BearingWhirl) -> dict[str, Any]:
-    return {
-        "bearing": bearing.bearing,
-        "shaft": bearing.shaft,
-        "orbit_um": UM * bearing.amplitude,
-        "minor_um": UM * bearing.minor,
-        "clearance_um": None if bearing.clearance is None else UM * bearing.clearance,
-        "share": bearing.clearance_share,
-        "force_N": bearing.force,
-        "static_load_N": bearing.static_load,
     }

@@ -16,7 +16,7 @@ from rigdesign.checks.rules import with_omissions
 from rigdesign.postprocessing.nearest_resonance import NearDwell, mesh_resonances
 from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.housing import CoolingBalance, HeatSource, RigHeat
+from rigdesign.results.housing import CoolingBalance, HeatSource, RigHeat, StageBalance
 from rigdesign.results.loads import ContactLoss, MeshResonance, StageLoad, UnsolvedSpeed
 from rigdesign.results.vibration import AvoidedResonance, nearer
 from rigdesign.results.warm_gearbox import SealClearance, WarmGearbox
@@ -194,17 +194,18 @@ def test_one_check_of_the_seal_travel_for_every_shaft_over_all_held_stages() -> 
 
 
 def test_cooler_heater_and_room_are_those_of_their_own_worst_stage() -> None:
-    def balance(stage: str, cooler: float, heater: float, room: float) -> CoolingBalance:
-        return CoolingBalance(
+    def balance(stage: str, cooler: float, heater: float, room: float) -> StageBalance:
+        cooling = CoolingBalance(
             stage=stage, losses=0.0, pump=0.0, heater=heater, cooler=cooler, room=room, stored=None, not_heat=0.0,
-            flow=26.0 / 6e4, heat=heat(stage, room),
+            flow=26.0 / 6e4,
         )  # fmt: skip
+        return StageBalance(cooling=cooling, heat=heat(stage, room))
 
     def heat(stage: str, room: float) -> RigHeat:
         box = HeatSource(name="test", kind="gearbox", power=room, sinks={"room": room})
         return RigHeat(stage=stage, sources=(box,), drive_power=room, mains_power=room, input_power=room)
 
-    both = replace(solved(), cooling=[balance("hot", 9e3, 0.5e3, 2e3), balance("fast", 12e3, 1.5e3, 1e3)])
+    both = replace(solved(), balances=[balance("hot", 9e3, 0.5e3, 2e3), balance("fast", 12e3, 1.5e3, 1e3)])
     found = {check.id: (check.value, check.reason) for check in oil.checks(both)}
     assert found["oil.cooler"] == (pytest.approx(12.0), "stage fast")
     assert found["oil.heater"] == (pytest.approx(1.5), "stage fast")

@@ -43,7 +43,6 @@ def found(
             StageLateral(torque="held", modes=held, **common, **more),
             StageLateral(torque="lost", modes=lost, **common),
         ),
-        curve=(),
     )
     solved: Any = SimpleNamespace(case=CASE, lateral=vibration, no_clearances="")
     return {check.id: check for check in checks(solved)}
@@ -77,7 +76,7 @@ def test_rigid_bodies_that_sway_in_unloaded_bearings_are_no_decrement_and_no_cri
     """Shafts in the play of rolling bearings at 1.2 Hz; a whirl at half the speed counts, though as rigid."""
     swaying = replace(mode(0.0003, 1.2), elastic_share=1e-5)
     whirling = replace(mode(0.2, 95.0), elastic_share=0.003)
-    near = Separation(mode=swaying, speed=7.6, harmonic=1, margin=0.01, required=0.16)
+    near = Separation(mode=0, speed=7.6, harmonic=1, margin=0.01, required=0.16)
     calm = found(held=(swaying, whirling), separations=(near,))
     check = calm["lateral.stability"]
     assert (check.value, check.verdict) == (0.2, "pass")
@@ -89,19 +88,20 @@ def test_rigid_bodies_that_sway_in_unloaded_bearings_are_no_decrement_and_no_cri
 
 
 def test_a_critical_speed_keeps_the_distance_that_its_amplification_asks_for() -> None:
-    near = Separation(mode=mode(0.1), speed=1256.6, harmonic=1, margin=-0.10, required=0.16)
-    damped = Separation(mode=mode(3.0), speed=1256.6, harmonic=1, margin=0.01, required=0.0)
-    check = found(separations=(near, damped))["lateral.separation"]
+    modes = (mode(0.1), mode(3.0))
+    near = Separation(mode=0, speed=1256.6, harmonic=1, margin=-0.10, required=0.16)
+    damped = Separation(mode=1, speed=1256.6, harmonic=1, margin=0.01, required=0.0)
+    check = found(held=modes, separations=(near, damped))["lateral.separation"]
     assert (check.value, check.verdict) == (pytest.approx(0.10 / 0.16), "fail")
     assert "10 % below 1 x 12000 rpm, needs 16 %" in check.reason
-    calm = found(separations=(damped,))["lateral.separation"]
+    calm = found(held=modes, separations=(damped,))["lateral.separation"]
     assert calm.verdict == "pass" and "no lateral mode with AF >= 2.5" in calm.reason
 
 
 @pytest.mark.parametrize(("margin", "verdict"), [(-0.09, "fail"), (0.12, "pass")])
 def test_torsional_modes_stay_a_tenth_off_once_and_twice_a_turn(margin: float, verdict: str) -> None:
-    one = Separation(mode=mode(0.01, 400.0, "torsion"), speed=1256.6, harmonic=2, margin=margin, required=0.1)
-    check = found(torsional=(one,))["lateral.torsional_separation"]
+    one = Separation(mode=0, speed=1256.6, harmonic=2, margin=margin, required=0.1)
+    check = found(held=(mode(0.01, 400.0, "torsion"),), torsional=(one,))["lateral.torsional_separation"]
     assert (check.value, check.verdict) == (pytest.approx(abs(margin)), verdict)
 
 

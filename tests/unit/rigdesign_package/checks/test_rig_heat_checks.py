@@ -1,6 +1,5 @@
 """Checks around the heat of the rig: what they leave out, and what moves them."""
 
-import math
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -24,7 +23,7 @@ def loaded(folder: Path, text: str) -> Case:
 
 
 def solved(case: Case, **more: Any) -> Any:
-    return SimpleNamespace(case=case, cooling=(), **more)
+    return SimpleNamespace(case=case, balances=(), **more)
 
 
 def test_the_history_of_a_circuit_leaves_out_the_machine_it_cools(tmp_path: Path) -> None:
@@ -72,14 +71,14 @@ def test_only_the_coupling_is_solved_again_for_a_machine_and_nothing_for_the_roo
 
 def test_the_air_flow_that_holds_the_limit_is_the_reason(tmp_path: Path) -> None:
     room = SimpleNamespace(temperature=300.15, needed_air_flow=0.5)
-    walls = SimpleNamespace(temperature=301.15, needed_air_flow=math.inf)
+    walls = SimpleNamespace(temperature=301.15, needed_air_flow=None)
     case = loaded(tmp_path, ROOM)
-    cooling = [SimpleNamespace(stage="a", heat=SimpleNamespace(room=each)) for each in (room, walls)]
-    whole: Any = SimpleNamespace(case=case, cooling=cooling)
+    cooling = [SimpleNamespace(heat=SimpleNamespace(stage="a", room=each)) for each in (room, walls)]
+    whole: Any = SimpleNamespace(case=case, balances=cooling)
     (warmest,) = checks(whole)
     assert warmest.value == pytest.approx(28.0)
     assert warmest.verdict == "pass"
     assert "no ventilation" in warmest.reason
-    first: Any = SimpleNamespace(case=case, cooling=cooling[:1])
+    first: Any = SimpleNamespace(case=case, balances=cooling[:1])
     (only,) = checks(first)
     assert only.reason == "stage a, 1800 m3/h of air hold the limit"

@@ -14,7 +14,6 @@ from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.report.sections.vibration import least_safe
 from rigdesign.results.check import Check
 from rigdesign.results.loads import EventPeak, EventRecord
-from rigdesign.results.serialisation.teeth import press_fit_row
 from tests.builders.checks import check as check_of
 from tests.builders.made_run import made_ramp, made_run
 from tests.builders.twisting import twisting_rig
@@ -101,12 +100,12 @@ def test_time_run_and_events_give_the_torque_of_the_seat_itself() -> None:
 def test_the_table_of_the_report_is_what_the_check_holds() -> None:
     """The least safety of all rows is the value of the check, its row where the check says."""
     found = solved((FIT, "150 um"), seat=(50.0, 240.0))
-    rows = [press_fit_row(fit) for fit in found.press_fits]
+    fits = found.press_fits
     check = slip(found)
-    worst = least_safe(rows, "gear")[0]
-    assert worst["safety"] == min(row["safety"] for row in rows) == pytest.approx(check.value)
-    assert worst["where"] == "time run, stage run_up" and f"test.pinion, {worst['where']}" in check.reason
-    assert worst["peak_torque_Nm"] == 240.0
+    worst = least_safe(fits, "gear")[0]
+    assert worst.safety == min(fit.safety or math.inf for fit in fits) == pytest.approx(check.value)
+    assert worst.where == "time run, stage run_up" and f"test.pinion, {worst.where}" in check.reason
+    assert worst.peak_torque == 240.0
 
 
 def test_without_a_press_fit_nothing_can_slip() -> None:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rigdesign.cli.terminal.study import print_study
-from rigdesign.results.result import Finding
+from rigdesign.results.check import Finding
 from rigdesign.studies.result import PassProbability, SobolIndex, Swing
 from rigdesign.studies.run import StudyOutcome
 from tests.builders.study_points import map_points, oil_points, study_of

@@ -12,9 +12,9 @@ from rigdesign.cli.application import print_json
 from rigdesign.cli.terminal.checks import print_checks, reason_groups
 from rigdesign.cli.terminal.console import plain_streams, verbosity
 from rigdesign.report.pages.report import report_html
-from rigdesign.results.check import Check
+from rigdesign.results.check import Check, Finding
 from rigdesign.results.ranges import RangesResult
-from rigdesign.results.result import Finding, RunResult
+from rigdesign.results.result import RunResult
 from tests.builders.report import make_check, make_result, small_result
 
 Printed = Callable[..., list[str]]

@@ -12,7 +12,7 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.loop_over_speed import stage_losses
 from rigdesign.coupling.losses import oil_jets
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.postprocessing.housing import cooling_balance
+from rigdesign.postprocessing.housing import stage_balance
 from rigdesign.results.serialisation.housing import loss_rows
 from rigdesign.rig.model import Rig
 from tests.builders.warm_prototype import base, drive_power, lost_in_all, settled
@@ -56,7 +56,7 @@ def test_the_pump_brakes_no_shaft() -> None:
 def test_heat_and_motor_power_close_with_the_pump_beside_the_motor() -> None:
     """Motor = losses of the shafts and joints; cooler + room = those losses + pump + heaters."""
     rig, last = settled()
-    balance = cooling_balance(rig, last)
+    balance = stage_balance(rig, last).cooling
     assert balance.pump == pytest.approx(2 * jet_at(12000.0).pumped, rel=0.05)
     assert abs(balance.imbalance) < 2e-3 * balance.losses
     assert drive_power(rig, last) == pytest.approx(lost_in_all(last), rel=2e-3)

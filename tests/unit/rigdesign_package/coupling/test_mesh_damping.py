@@ -9,7 +9,7 @@ from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.located_loss import PlacedLoss
-from rigdesign.postprocessing.housing import cooling_balance
+from rigdesign.postprocessing.housing import stage_balance
 from rigdesign.prediction.memoisation import Memoisation
 from rigdesign.results.serialisation.housing import loss_rows
 from rigdesign.run.main import losses_by_stage
@@ -64,7 +64,7 @@ def test_motor_pays_the_damper_and_no_part_is_warmed_by_it() -> None:
     assert damper(last).into_oil == damper(last).into_body == 0.0
     row = next(row for row in loss_rows("test", last.losses) if row.kind == "mesh_damping")
     assert row.not_heat_W == row.power_W == damper(last).loss.power
-    parts = cooling_balance(rig, last)
+    parts = stage_balance(rig, last).cooling
     assert parts.not_heat == pytest.approx(
         lost(last, "mesh_damping") + lost(last, "mesh_damping", "reference")
     )
@@ -76,7 +76,7 @@ def test_case_may_give_the_work_of_the_damper_to_the_oil() -> None:
     _, without = settled(*CLOSING)
     rig, last = settled(*CLOSING, HEATS)
     assert damper(last).into_oil == pytest.approx(damper(last).loss.power)
-    assert cooling_balance(rig, last).not_heat == 0.0
+    assert stage_balance(rig, last).cooling.not_heat == 0.0
     assert open_share(rig, last) < 2e-3
     box = rig.case.gearboxes["test"].oil
     oil = rig.oils[box.oil]

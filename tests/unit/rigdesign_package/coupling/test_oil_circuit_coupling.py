@@ -8,7 +8,7 @@ from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.oil_circuits import circuit_balances, demand_setpoints
 from rigdesign.coupling.time_run import held_points
 from rigdesign.oil_circuit.steady import SetpointNotHeldError
-from rigdesign.postprocessing.housing import cooling_balance
+from rigdesign.postprocessing.housing import stage_balance
 from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.oil_circuit import ZERO, plant_case
@@ -42,18 +42,20 @@ def test_the_supply_falls_to_what_the_heater_can_hold(solved: tuple[Rig, PointRe
 
 
 def test_the_heat_of_the_rig_closes_with_its_circuit(solved: tuple[Rig, PointResult]) -> None:
-    balance = cooling_balance(solved[0], solved[1].last)
+    found = stage_balance(solved[0], solved[1].last)
+    balance = found.cooling
+    assert balance.circulation is not None
     given = balance.losses + balance.heater + balance.circulation
     assert abs(balance.imbalance) < 0.01 * given
     assert balance.tanks == pytest.approx(
-        4.0 * (balance.circuits["warm"].tank_temperature - ZERO - 20.0), rel=1e-6
+        4.0 * (found.circuits["warm"].tank_temperature - ZERO - 20.0), rel=1e-6
     )
     assert balance.circulation == pytest.approx(1e-4 * 5e5 / 0.7)
 
 
 def test_the_check_fails_with_the_distance_from_the_setpoint(solved: tuple[Rig, PointResult]) -> None:
     rig, result = solved
-    (check,) = steady_checks(SolvedRig(rig=rig, points=[result], cooling=[cooling_balance(rig, result.last)]))
+    (check,) = steady_checks(SolvedRig(rig=rig, points=[result], balances=[stage_balance(rig, result.last)]))
     assert check.id == "oil.supply.warm.lines.mesh"
     assert check.verdict == "fail"
     assert check.value == pytest.approx(

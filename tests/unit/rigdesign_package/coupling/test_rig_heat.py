@@ -12,10 +12,9 @@ from rigdesign.checks.rig_heat import checks as room_checks
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.oil_circuits import demand_loss_maps, drive_heat
 from rigdesign.coupling.time_run import held_points
-from rigdesign.postprocessing.housing import cooling_balance
+from rigdesign.postprocessing.housing import circuit_balances_at, stage_balance
 from rigdesign.postprocessing.solved_rig import SolvedRig
-from rigdesign.results.housing import CoolingBalance
-from rigdesign.results.serialisation.housing import circuit_rows, rig_heat_row
+from rigdesign.results.housing import StageBalance
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig_heat.component import CouplingRotor, room_balance
 from tests.builders.oil_circuit import PLANT, ZERO
@@ -49,16 +48,16 @@ def solved(tmp_path_factory: pytest.TempPathFactory) -> tuple[Rig, PointResult]:
 
 
 @pytest.fixture(scope="module")
-def balance(solved: tuple[Rig, PointResult]) -> CoolingBalance:
-    return cooling_balance(solved[0], solved[1].last)
+def balance(solved: tuple[Rig, PointResult]) -> StageBalance:
+    return stage_balance(solved[0], solved[1].last)
 
 
-def power_of(balance: CoolingBalance, name: str) -> float:
+def power_of(balance: StageBalance, name: str) -> float:
     return next(source.power for source in balance.heat.sources if source.name == name)
 
 
 def test_the_drive_delivers_the_losses_and_every_machine_its_own(
-    solved: tuple[Rig, PointResult], balance: CoolingBalance
+    solved: tuple[Rig, PointResult], balance: StageBalance
 ) -> None:
     result = solved[1]
     rotor = CouplingRotor(name="pinion_side", radius=0.03, length=0.04)
@@ -71,43 +70,43 @@ def test_the_drive_delivers_the_losses_and_every_machine_its_own(
     assert heat.mains_power == pytest.approx(heat.drive_power / (0.97 * 0.9 * 0.95))
 
 
-def test_power_from_the_mains_leaves_by_all_sinks(balance: CoolingBalance) -> None:
+def test_power_from_the_mains_leaves_by_all_sinks(balance: StageBalance) -> None:
     """Within what the coupling loop leaves open; the machines add nothing to that."""
     heat = balance.heat
     out = math.fsum(heat.into(sink) for sink in ("room", "oil", "water", "no_heat"))
     assert heat.into("stored") == 0.0
     assert heat.input_power - out == pytest.approx(heat.imbalance)
     assert abs(heat.imbalance) < 0.005 * heat.input_power
-    assert heat.imbalance == pytest.approx(balance.imbalance, abs=1e-3 * heat.input_power)
-    assert heat.into("oil") == pytest.approx(balance.cooler, rel=5e-3)
+    assert heat.imbalance == pytest.approx(balance.cooling.imbalance, abs=1e-3 * heat.input_power)
+    assert heat.into("oil") == pytest.approx(balance.cooling.cooler, rel=5e-3)
     assert heat.input_power == pytest.approx(
-        heat.mains_power + balance.pump + balance.heater + balance.circulation
+        heat.mains_power + balance.cooling.put_in - balance.cooling.losses - (balance.cooling.machines or 0.0)
     )
 
 
 def test_a_machine_cooled_with_the_oil_of_a_circuit_warms_its_tank(
-    solved: tuple[Rig, PointResult], balance: CoolingBalance
+    solved: tuple[Rig, PointResult], balance: StageBalance
 ) -> None:
     circuit = balance.circuits["warm"]
     given = 0.9 * power_of(balance, "transmission")
     assert circuit.machine_heat == pytest.approx(given)
     assert abs(circuit.imbalance) < 1e-6
-    (row,) = circuit_rows(balance)
-    assert row["machines_W"] == pytest.approx(given)
-    assert row["devices"][0]["capability_W"] == 1500.0
-    assert row["lines"][0]["supply_degC"] == pytest.approx(circuit.lines["mesh"].supply - ZERO)
+    (shown,) = circuit_balances_at(balance)
+    assert shown.machines == pytest.approx(given)
+    assert shown.devices[0].capability == 1500.0
+    assert shown.lines[0].supply == pytest.approx(circuit.lines["mesh"].supply)
     machines = given + 0.5 * power_of(balance, "pump_motor_of_the_rig")
-    assert balance.machines == pytest.approx(machines)
+    assert balance.cooling.machines == pytest.approx(machines)
 
 
 def test_the_room_takes_what_everything_gives_it(
-    solved: tuple[Rig, PointResult], balance: CoolingBalance
+    solved: tuple[Rig, PointResult], balance: StageBalance
 ) -> None:
     rig, _ = solved
     by_hand = math.fsum(
         (
-            balance.room,
-            balance.tanks,
+            balance.cooling.room,
+            balance.cooling.tanks or 0.0,
             power_of(balance, "pinion_side"),
             0.1 * power_of(balance, "transmission"),
             0.2 * power_of(balance, "motor"),
@@ -122,14 +121,12 @@ def test_the_room_takes_what_everything_gives_it(
     assert room.temperature - ZERO - 20.0 == pytest.approx(
         by_hand / (1500.0 / 3600.0 * 1.204 * 1006.0), rel=5e-3
     )
-    row = rig_heat_row(balance.heat, parts)
-    assert row["room"]["temperature_degC"] == pytest.approx(room.temperature - ZERO)
-    assert sum(source["room_W"] for source in row["sources"]) == pytest.approx(by_hand)
+    assert (room.limit, room.air_flow) == (parts.temperature_limit, parts.air_flow)
 
 
-def test_the_checks_hold_the_same_room(solved: tuple[Rig, PointResult], balance: CoolingBalance) -> None:
+def test_the_checks_hold_the_same_room(solved: tuple[Rig, PointResult], balance: StageBalance) -> None:
     rig, result = solved
-    whole = SolvedRig(rig=rig, points=[result], cooling=[balance])
+    whole = SolvedRig(rig=rig, points=[result], balances=[balance])
     (check,) = room_checks(whole)
     room = balance.heat.room
     assert room is not None

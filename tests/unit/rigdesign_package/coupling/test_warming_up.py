@@ -8,7 +8,7 @@ import pytest
 
 from rigdesign.base.errors import CaseError
 from rigdesign.coupling.located_loss import STORED
-from rigdesign.postprocessing.housing import cooling_balance
+from rigdesign.postprocessing.housing import stage_balance
 from rigdesign.prediction.places import place_weights
 from rigdesign.run.warnings import _warming
 from rigdesign.transient.heating import Heating
@@ -98,7 +98,7 @@ def test_a_point_taken_too_early_lies_between_room_and_steady() -> None:
     assert STORED not in heat_by_kind(steady)
     for rig, last in ((early, young), (later, old)):
         assert last.fields["test"].solution.balance.closure <= CLOSURE
-        assert cooling_balance(rig, last).stored == pytest.approx(-heat_by_kind(last)[STORED])
+        assert stage_balance(rig, last).cooling.stored == pytest.approx(-heat_by_kind(last)[STORED])
         assert open_share(rig, last) < 2e-3
     assert heat_by_kind(young)[STORED] < 3.0 * heat_by_kind(old)[STORED] < 0.0
 

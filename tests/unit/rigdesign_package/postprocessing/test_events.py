@@ -22,7 +22,7 @@ from rigdesign.report.pages.report import report_html
 from rigdesign.report.results_json import results_document
 from rigdesign.results.check import Checks
 from rigdesign.results.loads import EventRecord
-from rigdesign.results.serialisation.events import event_row
+from rigdesign.results.quantity import Records
 from tests.builders.made_run import made_ramp, made_run
 from tests.builders.paths import CASES
 from tests.builders.report import make_result
@@ -205,7 +205,7 @@ def test_a_monitor_that_does_not_trip_fails_its_limit(rig: SolvedRig) -> None:
 
 
 def test_report_and_results_show_events(rig: SolvedRig) -> None:
-    result = replace(make_result(), events=[event_row(record) for record in rig.events])
+    result = replace(make_result(), events=Records(rig.events))
     rows = results_document(result)["events"]
     assert [row["name"] for row in rows] == ["broken", "stop", "fast"]
     assert rows[0]["peaks"][0]["factor"] > 1.8
@@ -222,12 +222,13 @@ def test_report_and_results_show_events(rig: SolvedRig) -> None:
 
 
 def test_the_report_shows_what_a_stop_passes(rig: SolvedRig) -> None:
-    row = event_row(rig.events[1])
+    result = replace(make_result(), events=Records([rig.events[1]]))
+    (row,) = results_document(result)["events"]
     passing = {(one["place"], one["quantity"]): one for one in row["passing"]}
     peak = next(peak for peak in rig.events[1].passing if peak.place == "pinion_side")
-    assert passing["pinion_side", "coupling torque"]["peak"] == peak.peak
+    assert passing["pinion_side", "coupling torque"]["peak_Nm"] == pytest.approx(peak.peak)
     assert passing["pinion_side", "coupling torque"]["speed_rpm"] == pytest.approx(peak.speed / RPM)
-    page = report_html(replace(make_result(), events=[row]))
+    page = report_html(result)
     assert "Highest torque during run-down" in page
 
 

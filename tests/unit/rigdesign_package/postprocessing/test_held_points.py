@@ -8,7 +8,7 @@ import pytest
 from rigdesign.base.part_name import OilStreamName
 from rigdesign.case.circuit_parts import HeatParts
 from rigdesign.coupling.loop import governing_point
-from rigdesign.postprocessing.housing import cooling_balance
+from rigdesign.postprocessing.housing import stage_balance
 
 
 def held(stage: str, speed: float, torque: float) -> Any:
@@ -55,10 +55,11 @@ def test_oil_that_must_be_heated_cools_nothing() -> None:
         ],
         fields={},
     )
-    balance = cooling_balance(rig, last)
+    found = stage_balance(rig, last)
+    balance, heat = found.cooling, found.heat
     assert balance.heater == pytest.approx(1400.0)
     assert balance.cooler == pytest.approx(6200.0 - 200.0 + 4700.0)
     assert balance.imbalance == pytest.approx(0.0)
-    assert balance.heat.drive_power == balance.heat.mains_power == 9300.0
-    assert balance.heat.input_power == 9300.0 + 1400.0
-    assert balance.heat.imbalance == pytest.approx(0.0)
+    assert heat.drive_power == heat.mains_power == 9300.0
+    assert heat.input_power == 9300.0 + 1400.0
+    assert heat.imbalance == pytest.approx(0.0)

@@ -9,6 +9,7 @@ import pytest
 
 from dynamics.rotor.damped_modes import rig_modes
 from dynamics.rotor.rotor_model import HousingSupport, isotropic_support
+from rigdesign.base.json_text import to_plain, to_text
 from rigdesign.case.loader import load_case
 from rigdesign.coupling.bearing_loads import solve_bearings
 from rigdesign.coupling.iteration import initial_state
@@ -16,8 +17,8 @@ from rigdesign.coupling.loop_system import running_state
 from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.postprocessing.vibration import lateral_vibration, seal_whirls, seat_stiffnesses
+from rigdesign.results.document import as_shown, record_of
 from rigdesign.results.lateral import LateralVibration
-from rigdesign.results.serialisation.vibration import lateral_row
 from rigdesign.rig.model import Rig, build_rig
 from tests.builders.paths import CASES
 from tests.builders.twisting import twisting_rig
@@ -58,9 +59,9 @@ def amplitudes(found: LateralVibration) -> np.ndarray:
 def test_orbits_grow_with_the_grade_and_far_below_a_critical_speed_with_the_square_of_the_speed() -> None:
     """The rig is linear in its unbalance; at a tenth and a fifth of the speed films change by less than half."""
     assert amplitudes(vibration(balance_grade=5.0)) == pytest.approx(2.0 * amplitudes(vibration()), rel=1e-9)
-    slow, fast = vibration().curve[0], vibration().curve[2]
-    assert fast.speed / slow.speed == pytest.approx(2.0)
-    growth = fast.bearings[0].amplitude / slow.bearings[0].amplitude
+    curve = vibration().curve
+    assert curve.speed[2] / curve.speed[0] == pytest.approx(2.0)
+    growth = curve.bearings[0].orbit[2] / curve.bearings[0].orbit[0]
     assert 2.0 < growth < 6.0
 
 
@@ -94,13 +95,21 @@ def test_seals_follow_their_shafts_and_a_twisting_rig_has_no_whirl() -> None:
     assert seal_whirls(quick, held(quick)) == ()
 
 
-def test_rows_have_every_stage_twice_and_the_curve() -> None:
-    row = lateral_row(vibration())
-    assert [stage["torque"] for stage in row["stages"]] == ["held", "lost"]
-    assert len(row["curve"]["speed_rpm"]) == len(row["curve"]["bearings"][0]["orbit_um"])
-    meshes = row["stages"][0]["meshes"]
-    assert {mesh["mesh"] for mesh in meshes} == set(rig_of().mesh_names)
-    assert all(0.0 < mesh["share"] < 0.01 for mesh in meshes)
+def test_there_is_every_stage_twice_and_the_curve() -> None:
+    found = vibration()
+    assert [stage.torque for stage in found.stages] == ["held", "lost"]
+    assert len(found.curve.speed) == len(found.curve.bearings[0].orbit)
+    meshes = found.stages[0].meshes
+    assert {mesh.mesh for mesh in meshes} == set(rig_of().mesh_names)
+    assert all(0.0 < mesh.share([line]) < 0.01 for mesh in meshes for line in mesh.forces)
+
+
+def test_it_comes_back_from_its_document() -> None:
+    """Numbers are turned into their units and back."""
+    document = as_shown(vibration())
+    assert document["stages"][0]["modes"][0]["frequency_Hz"] == vibration().stages[0].modes[0].frequency
+    again = as_shown(record_of(LateralVibration, document))
+    assert to_text(to_plain(again)) == to_text(to_plain(document))
 
 
 def test_the_stiffness_of_elastic_seats_stands_in_the_result() -> None:
@@ -111,8 +120,8 @@ def test_the_stiffness_of_elastic_seats_stands_in_the_result() -> None:
         isotropic_support("reference.front", 5e8, 1.0),
     )
     rig: Any = SimpleNamespace(elastic=SimpleNamespace(rig=SimpleNamespace(supports=supports)))
-    found = LateralVibration(stages=(), curve=(), seats=tuple(seat_stiffnesses(rig)))
-    front, _, stated = lateral_row(found)["seats"]
+    found = LateralVibration(stages=(), seats=tuple(seat_stiffnesses(rig)))
+    front, _, stated = as_shown(found)["seats"]
     assert front["bearing"] == "test.front"
     for key in ("lateral_N_um", "vertical_N_um", "axial_N_um"):
         assert front[key] == pytest.approx(1e3 * (2.0 + 2.0 / 3.0))
@@ -120,7 +129,7 @@ def test_the_stiffness_of_elastic_seats_stands_in_the_result() -> None:
         "bearing": "reference.front", "lateral_N_um": pytest.approx(500.0),
         "vertical_N_um": pytest.approx(500.0), "axial_N_um": None,
     }  # fmt: skip
-    assert lateral_row(vibration())["seats"] == []
+    assert vibration().seats == ()
 
 
 def test_modes_up_to_8_khz_are_enough_for_what_happens_at_the_speed_of_the_shafts() -> None:

@@ -1,5 +1,6 @@
 """Crossings of the closed loop in results, report and the check of the resonance distance."""
 
+import math
 from functools import cache
 
 import pytest
@@ -20,9 +21,9 @@ def test_modes_say_where_they_are_largest() -> None:
     dynamics = hunting().dynamics
     assert dynamics is not None
     first, *swinging = dynamics.natural_frequencies
-    assert (first["mode"], first["frequency_Hz"]) == (0, 0.0)
-    assert [row["mode"] for row in swinging] == list(range(1, len(swinging) + 1))
-    assert all(row["largest_at"] and 0.0 < row["damping_ratio"] < 1.0 for row in swinging)
+    assert (first.mode, first.frequency) == (0, 0.0)
+    assert [row.mode for row in swinging] == list(range(1, len(swinging) + 1))
+    assert all(row.largest_at and 0.0 < row.damping_ratio < 1.0 for row in swinging)
 
 
 def test_mesh_and_shaft_orders_meet_the_modes_of_the_loop() -> None:
@@ -33,11 +34,11 @@ def test_mesh_and_shaft_orders_meet_the_modes_of_the_loop() -> None:
     for name, box in case.gearboxes.items():
         cycles["mesh", name] = box.gears["pinion"].teeth
         cycles |= {("shaft", f"{name}_{gear}"): 1.0 for gear in box.gears}  # at the shaft's own speed
-    assert {(row["kind"], row["order_of"]) for row in dynamics.loop_crossings} == set(cycles)
-    modes = {row["mode"]: row for row in dynamics.natural_frequencies}
+    assert {(row.kind, row.order_of) for row in dynamics.loop_crossings} == set(cycles)
+    modes = {row.mode: row for row in dynamics.natural_frequencies}
     for row in dynamics.loop_crossings:
-        met = row["speed_rpm"] / 60.0 * cycles[row["kind"], row["order_of"]] * row["harmonic"]
-        assert met == pytest.approx(modes[row["mode"]]["frequency_Hz"], rel=1e-9)
+        met = row.speed / (2.0 * math.pi) * cycles[row.kind, row.order_of] * row.harmonic
+        assert met == pytest.approx(modes[row.mode].frequency, rel=1e-9)
 
 
 def test_the_distance_names_the_mode_of_the_loop_nearest_to_the_held_speed() -> None:

@@ -18,6 +18,9 @@ from rigdesign.report.figures.vibration import waterfall_figure
 from rigdesign.report.numbers import NARROW_SPACE, unit_text
 from rigdesign.report.palette import curve_style, gearbox_colours
 from rigdesign.report.sections.section import gearbox_styles
+from rigdesign.results.teeth import PairShare
+from rigdesign.results.units import RPM
+from rigdesign.results.vibration import Waterfall
 from tests.builders.report import make_result, thermal_and_expansion
 
 NOISE = re.compile(r"\d\.\d{5,}|\d{6,}\.\d|[0-9]e[-+]?\d")
@@ -106,19 +109,18 @@ def test_titles_of_panels_do_not_run_into_each_other(count: int) -> None:
     styles = {name: curve_style(number) for number, name in enumerate(names)}
     speed, frequency = np.linspace(600.0, 12000.0, 20), np.linspace(0.0, 1e4, 30)
     waterfall = [
-        {
-            "gearbox": name, "stage": "run_up", "teeth": 45, "pinion_speed_rpm": speed.tolist(),
-            "frequency_Hz": frequency.tolist(), "amplitude_Nm": np.full((20, 30), 5.0).tolist(),
-        }
+        Waterfall(
+            mesh=name, stage="run_up", per_turn=45.0, speed=tuple(speed / RPM), frequency=tuple(frequency),
+            amplitude=((5.0,) * 30,) * 20,
+        )
         for name in names
     ]  # fmt: skip
-    angle = np.linspace(-5.0, 5.0, 9).tolist()
+    angle = tuple(np.linspace(-5.0, 5.0, 9))
     shares = [
-        {
-            "gearbox": name, "stage": "test", "rolling_angle_deg": angle, "share": angle, "share_quasi_static": angle,
-            "force_over_mean": angle, "face_mm": angle, "line_load_N_mm": angle, "line_load_quasi_static_N_mm": angle,
-            "most_loaded_angle_deg": 0.0,
-        }
+        PairShare(
+            mesh=name, stage="test", angle=angle, share=angle, static_share=angle, force=angle, face=angle,
+            line_load=angle, static_line_load=angle, most_loaded=0.0,
+        )
         for name in names
     ]  # fmt: skip
     with drawing_style():

@@ -18,6 +18,7 @@ from rigdesign.cli.terminal.checks import print_checks
 from rigdesign.report import NonFiniteResultError, prepare_output, results_document, write_results
 from rigdesign.report.junit import check_seconds, write_junit
 from rigdesign.report.results_json import read_result
+from rigdesign.results.curve_files import without_references
 from tests.builders.commands import Rigdesign
 from tests.builders.report import gearbox_field, make_check, make_result, small_result
 
@@ -32,13 +33,14 @@ def written(tmp_path_factory):
 
 def test_results_json_keeps_the_contract(written):
     document = json.loads((written[0] / "results.json").read_text(encoding="utf-8"))
-    assert document["schema_version"] == "2"
+    assert document["schema_version"] == "3"
     assert set(document["case"]) >= {"name", "path", "hash"}
     assert document["verdict"] == "fail"
     assert set(document["checks"][0]) >= {
         "id", "title", "value", "limit", "unit", "margin", "distance", "verdict", "flags", "error", "source",
     }  # fmt: skip
-    gearbox = document["dynamics"]["gearboxes"]["test"]
+    whole = without_references(document, written[0])
+    gearbox = whole["dynamics"]["gearboxes"]["test"]
     assert set(gearbox["dynamic_factor"][0]) >= {
         "speed_rpm", "simulated", "simulated_half_peak_to_peak", "iso_6336_1_method_b",
     }  # fmt: skip
@@ -48,11 +50,11 @@ def test_results_json_keeps_the_contract(written):
         "gearbox", "stage", "max_temperature_degC", "heat", "closure_relative", "nodes", "elements",
     }  # fmt: skip
     assert set(document["thermal"][0]["heat"][0]) >= {"surface", "kind", "power_W"}
-    assert set(document["growth"][0]) >= {"gearbox", "stage", "seal_gaps", "shafts"}
-    assert document["coupling"]["iterations"] == 4
-    assert document["coupling"]["residuals"][1] == {
-        "stage": "dwell", "pass": 2, "temperature_K": 4.0, "growth_um": pytest.approx(300 / 18),
-        "torque_relative": pytest.approx(0.02 / 12),
+    assert set(document["expansion"][0]) >= {"gearbox", "stage", "seal_gaps", "shafts"}
+    (history,) = document["coupling"]
+    assert (history["stage"], history["iterations"]) == ("dwell", 4)
+    assert history["residuals"][1] == {
+        "temperature_K": 4.0, "expansion_um": pytest.approx(300 / 18), "torque_relative": pytest.approx(0.02 / 12),
     }  # fmt: skip
     assert document["warnings"][0] == {
         "id": "iso_6336_range",
@@ -82,8 +84,7 @@ def test_two_writes_are_the_same_bytes(written, tmp_path):
 
 def test_case_without_drivetrain_keeps_the_keys(tmp_path):
     document = results_document(make_result(dynamics=None, expansion=[], thermal=[], fields=[], coupling=[]))
-    assert document["dynamics"] == {"gearboxes": {}}
-    assert document["coupling"] == {"iterations": 0, "residuals": []}
+    assert (document["dynamics"], document["coupling"]) == (None, [])
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), np.float64("nan")])
@@ -361,6 +362,7 @@ def test_a_pdf_beside_the_result_belongs_to_it(rigdesign: Rigdesign, tmp_path, m
 def test_a_report_without_the_files_of_its_fields_has_no_pictures_of_them(written, tmp_path):
     out, _ = written
     shutil.copy(out / "results.json", tmp_path)
+    shutil.copytree(out / "curves", tmp_path / "curves")
     again, _ = read_result(tmp_path)
     assert again.fields == [] and again.thermal
 
@@ -369,14 +371,19 @@ def test_a_report_without_the_files_of_its_fields_has_no_pictures_of_them(writte
     ("damage", "said"),
     [
         (lambda d: d | {"schema_version": "0"}, "schema_version 0"),
+        (
+            lambda d: d | {"schema_version": "2"},
+            "schema_version 2, this version reads 3; run `rigdesign check` again",
+        ),
         (lambda d: d | {"losses": [{"place": 3}]}, "is damaged"),
-        (lambda d: {key: value for key, value in d.items() if key != "growth"}, "is damaged"),
+        (lambda d: {key: value for key, value in d.items() if key != "expansion"}, "is damaged"),
         (lambda d: {}, "is no results.json of a check; report takes"),
     ],
 )
 def test_what_is_no_result_is_refused_with_what_to_do(damage, said, written, rigdesign: Rigdesign, tmp_path):
     document = json.loads((written[0] / "results.json").read_text(encoding="utf-8"))
     (tmp_path / "results.json").write_text(json.dumps(damage(document)), encoding="utf-8")
+    shutil.copytree(written[0] / "curves", tmp_path / "curves")
     ended = rigdesign("report", tmp_path, "--html")
     assert ended.status == 2 and said in ended.err and not (tmp_path / "report.html").exists()
     refused = rigdesign("report", written[0], "--out", tmp_path)

@@ -90,7 +90,7 @@ def test_heat_of_the_rig_goes_where_the_balance_says() -> None:
         figure = rig_flow_figure(losses, result.oil, result.cooler[0])
         assert figure is not None
         found = labels(figure)
-        assert rig_flow_figure([], [], dict.fromkeys(("heater_W", "cooler_W", "room_W"), 0.0)) is None
+        assert rig_flow_figure([], [], replace(result.cooler[0], heater=0.0, cooler=0.0, room=0.0)) is None
     assert found["room"] == "2379 W"
     assert found["cooler"] == "10.5 kW"
     assert found["oil heaters"] == "600 W"
@@ -101,7 +101,7 @@ def test_heat_that_streams_carry_off_has_its_place() -> None:
     result = make_result()
     losses = [row for row in result.losses if row.stage == "dwell"]
     with drawing_style():
-        figure = rig_flow_figure(losses, result.oil, {**result.cooler[0], "streams_W": 900.0})
+        figure = rig_flow_figure(losses, result.oil, replace(result.cooler[0], streams=900.0))
     assert labels(figure)["streams of the housings"] == "900 W"
 
 

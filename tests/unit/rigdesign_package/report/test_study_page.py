@@ -8,7 +8,7 @@ import pytest
 
 from rigdesign.base.errors import UsageError
 from rigdesign.report.figures.drawing import drawing_style, margin_axis, new_figure
-from rigdesign.results.result import Finding
+from rigdesign.results.check import Finding
 from rigdesign.studies.result import Crossing, PassProbability, SobolIndex, Swing
 from tests.builders.browser import browser  # noqa: F401 - a fixture
 from tests.builders.study_points import (

@@ -13,7 +13,7 @@ from rigdesign.case import load_case
 from rigdesign.checks.law_ranges import loss_findings, oil_findings
 from rigdesign.coupling.located_loss import PlacedLoss
 from rigdesign.properties.oil import FVA_3, FVA_3A
-from rigdesign.results.result import Finding
+from rigdesign.results.check import Finding
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.warnings import oil_at_room_temperature
 

@@ -96,8 +96,8 @@ def test_the_power_of_heaters_and_cooler_ends_at_the_steady_one(
     streams = {row.consumer: row.heat_W for row in result.oil}
     for name, heat in streams.items():
         assert power.streams_W[name][at] == pytest.approx(heat, rel=0.02, abs=30.0)
-    assert power.heater_W[at] == pytest.approx(float(steady["heater_W"]), rel=0.02)
-    assert power.cooler_W[at] == pytest.approx(float(steady["cooler_W"]), rel=0.02)
+    assert power.heater_W[at] == pytest.approx(steady.heater, rel=0.02)
+    assert power.cooler_W[at] == pytest.approx(steady.cooler, rel=0.02)
     assert power.heater_W[0] == power.cooler_W[0] == 0.0
     soaking = [i for i, name in enumerate(power.phase) if name == "soak_back"]
     assert {power.heater_W[i] for i in soaking} == {power.cooler_W[i] for i in soaking} == {0.0}

@@ -215,7 +215,7 @@ def without(key):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (damaged(schema_version="1"), "schema_version 1, this version reads 2; run `rigdesign check` again"),
+        (damaged(schema_version="1"), "schema_version 1, this version reads 3; run `rigdesign check` again"),
         (
             without("inputs"),
             rf"lists no inputs \(written by rigdesign {__version__}\); run `rigdesign check` again",
@@ -271,7 +271,7 @@ def test_a_file_that_is_no_text(tmp_path):
 
 def test_what_a_check_writes_can_be_read(first):
     assert first["schema_version"] == RESULTS_SCHEMA_VERSION
-    assert {"inputs", "checks", "losses", "thermal", "growth", "oil", "dynamics"} <= set(first)
+    assert {"inputs", "checks", "losses", "thermal", "expansion", "oil", "dynamics"} <= set(first)
 
 
 def test_the_terminal_keeps_to_80_columns(pair, capsys):

@@ -157,7 +157,7 @@ def test_an_input_solves_again_what_it_touches_and_an_unknown_one_everything(
 
 def test_report_and_json_have_the_ranges_only_where_they_were_evaluated() -> None:
     plain = make_result(dynamics=None, fields=[], expansion=[], losses=[], oil=[])
-    assert "ranges" not in results_document(plain)
+    assert results_document(plain)["ranges"] is None
     assert "Verdicts over the ranges" not in report_html(plain)
     broken, lost = outcome(142.0, seal_gap=at(-0.03, 1.06, "fail")), outcome(None, "did <not> settle")
     result = ranged(STATED, [*both(GAP, broken, STATED), *both(OIL, lost, STATED)], GAP_CHECK)
