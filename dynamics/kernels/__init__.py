@@ -16,7 +16,6 @@ from dynamics.kernels.drag import DragLaws
 from dynamics.kernels.linear_step import FOUR, DiscreteModes, DragModes
 from dynamics.kernels.march import march
 from dynamics.kernels.march_state import N_PORTS, Carried, Commands, MarchRecord, Steps
-from dynamics.kernels.mesh_workspace import port_place
 from dynamics.kernels.mode_pass import WIDTH
 from dynamics.kernels.reactions import MeshStates, mesh_reactions, tooth_pair_forces
 from dynamics.kernels.wrench import WrenchModes
@@ -41,6 +40,5 @@ __all__ = [
     "WrenchModes",
     "march",
     "mesh_reactions",
-    "port_place",
     "tooth_pair_forces",
 ]

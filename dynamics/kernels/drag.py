@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined, sliding_direction
 from dynamics.kernels.contact_table import V_R1, V_R2
 from dynamics.kernels.linear_step import BANK_AT, FOUR, STATE_AT, DragModes
-from dynamics.kernels.mesh_workspace import N_SPACE, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
+from dynamics.kernels.mesh_workspace import NEW, OLD, Meshes, torque_at
 from dynamics.kernels.mode_pass import N_BANK, WIDTH
 
 Array = NDArray[np.float64]
@@ -105,30 +105,30 @@ def _outputs(per_torque: Array, torque: Array, total: Array) -> None:
 
 
 @inlined
-def drags_on_ports(drags: DragModes, torque: Array, total: Array, space: Array) -> None:
+def drags_on_ports(drags: DragModes, torque: Array, total: Array, meshes: Meshes) -> None:
     """Add to speeds and turns of the ports what drag torques give that stay as they are over the step."""
     _outputs(drags.ports_held, torque, total)
     for m in range(total.shape[0] // 4):
-        at = (m * N_SPACE) & POSITIVE
-        space[at + SPEED] += total[4 * m]
-        space[at + TURN] += total[4 * m + 1]
-        space[at + PORT + SPEED] += total[4 * m + 2]
-        space[at + PORT + TURN] += total[4 * m + 3]
+        mesh = meshes[m & POSITIVE]
+        mesh.pinion.speed += total[4 * m]
+        mesh.pinion.turn += total[4 * m + 1]
+        mesh.wheel.speed += total[4 * m + 2]
+        mesh.wheel.turn += total[4 * m + 3]
 
 
 @inlined
-def _move_ports(drags: DragModes, change: Array, total: Array, values: Array, space: Array) -> None:
+def _move_ports(drags: DragModes, change: Array, total: Array, values: Array, meshes: Meshes) -> None:
     """Add to ports and meshes what changes of the drag torques at the end of the step give."""
     _outputs(drags.ports_new, change, total)
     for m in range(total.shape[0] // 4):
-        at = (m * N_SPACE) & POSITIVE
+        mesh = meshes[m & POSITIVE]
         speed_1, turn_1, speed_2, turn_2 = total[4 * m], total[4 * m + 1], total[4 * m + 2], total[4 * m + 3]
-        space[at + SPEED] += speed_1
-        space[at + TURN] += turn_1
-        space[at + PORT + SPEED] += speed_2
-        space[at + PORT + TURN] += turn_2
-        space[at + REACH] += values[m, V_R1] * turn_1 - values[m, V_R2] * turn_2
-        space[at + RATE] += values[m, V_R1] * speed_1 - values[m, V_R2] * speed_2
+        mesh.pinion.speed += speed_1
+        mesh.pinion.turn += turn_1
+        mesh.wheel.speed += speed_2
+        mesh.wheel.turn += turn_2
+        mesh.reach += values[m, V_R1] * turn_1 - values[m, V_R2] * turn_2
+        mesh.rate += values[m, V_R1] * speed_1 - values[m, V_R2] * speed_2
 
 
 @inlined
@@ -182,7 +182,7 @@ def _add_input(inputs: Array, row: int, torque: float, load_speed: Array) -> Non
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def _speeds(
-    drags: DragModes, blocks: Integers, bank: Array, space: Array, torque: Array, by_slow: Array, first: int,
+    drags: DragModes, blocks: Integers, bank: Array, meshes: Meshes, torque: Array, by_slow: Array, first: int,
     speed: Array,
 ) -> None:  # fmt: skip
     """Fill the speeds at the end of the step, the drag torques staying as they are over it.
@@ -195,9 +195,8 @@ def _speeds(
         speed[d] = by_slow[first + d]
     _add_modes(drags, blocks, bank, speed)
     for port in range(n_ports):
-        at = (port // 2 * N_SPACE + port % 2 * PORT) & POSITIVE
-        _add_input(drags.inputs, port, space[at + OLD], speed)
-        _add_input(drags.inputs, n_ports + port, space[at + TAU], speed)
+        _add_input(drags.inputs, port, torque_at(meshes, port, OLD), speed)
+        _add_input(drags.inputs, n_ports + port, torque_at(meshes, port, NEW), speed)
     for d in range(n_drags):
         _add_input(drags.inputs, 2 * n_ports + d, torque[d], speed)
     for d in range(n_drags):
@@ -262,7 +261,7 @@ def _iterate_drags(laws: DragLaws, through: Array, torque: Array, speed: Array, 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def brake(
-    laws: DragLaws, drags: DragModes, blocks: Integers, bank: Array, values: Array, space: Array, by_slow: Array,
+    laws: DragLaws, drags: DragModes, blocks: Integers, bank: Array, values: Array, meshes: Meshes, by_slow: Array,
     first: int, torque: Array, work: DragWork,
 ) -> bool:  # fmt: skip
     """Set the drag torques at the end of a step whose mesh torques are known; return whether they converged.
@@ -271,7 +270,7 @@ def brake(
     approach within one step is left to the next for the meshes to answer.
     """
     change, speed = work.change, work.speed
-    _speeds(drags, blocks, bank, space, torque, by_slow, first, speed)
+    _speeds(drags, blocks, bank, meshes, torque, by_slow, first, speed)
     for d in range(torque.shape[0]):
         change[d] = -torque[d]
     converged = _follow_drags(laws, drags.each_other, torque, speed, work.damping)
@@ -281,5 +280,5 @@ def brake(
         converged = _iterate_drags(laws, drags.each_other, torque, speed, work.damping)
     for d in range(torque.shape[0]):
         change[d] += torque[d]
-    _move_ports(drags, change, work.outputs, values, space)
+    _move_ports(drags, change, work.outputs, values, meshes)
     return bool(converged)

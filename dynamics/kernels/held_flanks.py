@@ -53,21 +53,7 @@ from dynamics.kernels.hold_path import (
     spline_curves,
     spline_weights,
 )
-from dynamics.kernels.mesh_workspace import (
-    ANGLE,
-    APART,
-    FRACTION,
-    HELD_ANGLE,
-    HIGH,
-    LEAN,
-    LOW,
-    LOWER,
-    OTHER_BACK,
-    OTHER_FRONT,
-    TEETH,
-    TURN,
-    UPPER,
-)
+from dynamics.kernels.mesh_workspace import MeshStep
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -97,51 +83,51 @@ class HeldRows(NamedTuple):
 
 
 @inlined
-def _front_begins(space: Array, at: int, values: Array, m: int) -> float:
+def _front_begins(mesh: MeshStep, values: Array, m: int) -> float:
     """Return the approach of the teeth above which flanks in front may touch."""
-    return float(values[m, V_LEAST_GAP] - space[at + OTHER_FRONT] * space[at + APART])
+    return float(values[m, V_LEAST_GAP] - mesh.other_front * mesh.apart)
 
 
 @inlined
-def _back_begins(space: Array, at: int, values: Array, m: int) -> float:
+def _back_begins(mesh: MeshStep, values: Array, m: int) -> float:
     """Return the approach of the teeth below which flanks on the back may touch."""
-    return float(space[at + OTHER_BACK] * space[at + APART] - values[m, V_BACKLASH] - values[m, V_LEAST_GAP])
+    return float(mesh.other_back * mesh.apart - values[m, V_BACKLASH] - values[m, V_LEAST_GAP])
 
 
 @inlined
 def find_place(
-    tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, angle: float, teeth: float
+    tables: ContactTables, mesh: MeshStep, m: int, held: HeldRows, angle: float, teeth: float
 ) -> None:
     """Find the flank of a mesh that touches at an angle of the pinion and an approach of the teeth, and its place."""
     values = tables.values
-    front = teeth > _front_begins(space, at, values, m)
-    back = teeth < _back_begins(space, at, values, m)
+    front = teeth > _front_begins(mesh, values, m)
+    back = teeth < _back_begins(mesh, values, m)
     side = 0 if front else 1
-    space[at + HELD_ANGLE], space[at + TEETH] = angle, teeth
+    mesh.table_angle, mesh.teeth = angle, teeth
     held.sides[m] = side if front or back else 2
     place = place_of(tables, m, side, angle)
-    held.knots[m], space[at + FRACTION] = place.knot, place.fraction
+    held.knots[m], mesh.fraction = place.knot, place.fraction
 
 
 @inlined
-def hold_mesh(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows) -> None:
+def hold_mesh(tables: ContactTables, mesh: MeshStep, m: int, held: HeldRows) -> None:
     """Hold the flanks of a mesh that touch at the place that was found."""
     values = tables.values
-    least, turning = _front_begins(space, at, values, m), _back_begins(space, at, values, m)
-    closer = space[at + OTHER_FRONT] * space[at + APART]
-    back = space[at + OTHER_BACK] * space[at + APART] - values[m, V_BACKLASH]
-    side, teeth = held.sides[m], space[at + TEETH]
+    least, turning = _front_begins(mesh, values, m), _back_begins(mesh, values, m)
+    closer = mesh.other_front * mesh.apart
+    back = mesh.other_back * mesh.apart - values[m, V_BACKLASH]
+    side, teeth = held.sides[m], mesh.teeth
     held.counts[m, 0], held.counts[m, 1] = 0, 0
     low, high = turning, least
     if side < 2:
-        sliding = Sliding(held.levels[m], space[at + LOWER], space[at + UPPER])
+        sliding = Sliding(held.levels[m], mesh.lower, mesh.upper)
         first = held.first[m, side] & POSITIVE
         reach = teeth + closer if side == 0 else back - teeth
         if tables.counts[m, C_GENERAL] == 0:
-            place = Place(held.knots[m], space[at + FRACTION])
+            place = Place(held.knots[m], mesh.fraction)
             rows = hold_phase(tables, m, side, place, sliding, reach, held.cells, held.rows, first)
         else:
-            state = FlankState(side, space[at + HELD_ANGLE], 0.0)
+            state = FlankState(side, mesh.table_angle, 0.0)
             rows = hold_path(tables, m, state, sliding, reach, held.rows, first)
         held.counts[m, side] = rows.n
         if side == 0:
@@ -150,32 +136,30 @@ def hold_mesh(tables: ContactTables, space: Array, at: int, m: int, held: HeldRo
         else:
             low, high = back - rows.high, back - rows.low
             high = high if high < least else least
-    space[at + LOW], space[at + HIGH] = low, high
+    mesh.low, mesh.high = low, high
     if side == 0 and teeth < turning:
-        _hold_back(tables, space, at, m, held, teeth)
+        _hold_back(tables, mesh, m, held, teeth)
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
-def _hold_back(tables: ContactTables, space: Array, at: int, m: int, held: HeldRows, teeth: float) -> None:
+def _hold_back(tables: ContactTables, mesh: MeshStep, m: int, held: HeldRows, teeth: float) -> None:
     """Hold the back flank of a mesh whose front flank is held."""
-    back = space[at + OTHER_BACK] * space[at + APART] - tables.values[m, V_BACKLASH]
-    sliding = Sliding(held.levels[m], space[at + LOWER], space[at + UPPER])
-    state = FlankState(1, space[at + HELD_ANGLE], 0.0)
+    back = mesh.other_back * mesh.apart - tables.values[m, V_BACKLASH]
+    sliding = Sliding(held.levels[m], mesh.lower, mesh.upper)
+    state = FlankState(1, mesh.table_angle, 0.0)
     rows = hold_path(tables, m, state, sliding, back - teeth, held.rows, held.first[m, 1] & POSITIVE)
     held.counts[m, 1] = rows.n
     # no longer from where the back flank begins to touch on
-    space[at + LOW] = max(space[at + LOW] if space[at + LOW] > teeth - 1.0 else -np.inf, back - rows.high)
-    space[at + HIGH] = min(space[at + HIGH], back - rows.low)
+    mesh.low = max(mesh.low if mesh.low > teeth - 1.0 else -np.inf, back - rows.high)
+    mesh.high = min(mesh.high, back - rows.low)
 
 
 @inlined
-def is_held(space: Array, at: int, values: Array, m: int) -> bool:
+def is_held(mesh: MeshStep, values: Array, m: int) -> bool:
     """Return whether the held rows of a mesh are good at the approach and the angle that it reaches."""
-    beside = values[m, V_R1] * (
-        space[at + ANGLE] + space[at + TURN] + space[at + LEAN] - space[at + HELD_ANGLE]
-    )
+    beside = values[m, V_R1] * (mesh.angle + mesh.pinion.turn + mesh.lean - mesh.table_angle)
     near = abs(beside) * values[m, V_PER_KNOT] < NEAR
-    return bool(near and space[at + LOW] <= space[at + TEETH] <= space[at + HIGH])
+    return bool(near and mesh.low <= mesh.teeth <= mesh.high)
 
 
 # A flank of a mesh with equal teeth held on its path: what ``kernels.hold_path`` does, for the usual case.

@@ -12,7 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
-from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
+from dynamics.kernels.mesh_workspace import NEW, OLD, Meshes, move_port, torque_at
 from dynamics.kernels.mode_pass import N_BANK, WIDTH, pass_modes
 
 Array = NDArray[np.float64]
@@ -61,7 +61,7 @@ class DiscreteModes(NamedTuple):
     and to the outputs in each step. Per branch the state holds groups of WIDTH real parts and WIDTH imaginary parts,
     filled up with zeros. Port ``2 m`` is the pinion of mesh ``m``, ``2 m + 1`` its wheel, port ``2 n_meshes`` stands
     for none. The outputs of port ``p`` are its speed (``2 p``) and the angle it turns in the step (``2 p + 1``). Blocks
-    and links name a port by its place in the space (``kernels.mesh_workspace``).
+    and links name a port by its number.
     """
 
     blocks: Integers
@@ -161,42 +161,44 @@ def _given(through: Array, t: int, c: float, d: float) -> tuple[float, float, fl
 
 
 @inlined
-def add_torques(links: Integers, first: int, through: Array, part: int, space: Array, torque: int) -> None:
-    """Add to speeds and turns what the torques in column ``torque`` give by the links from ``first`` on.
+def add_torques(links: Integers, first: int, through: Array, part: int, meshes: Meshes, kind: int) -> None:
+    """Add to speeds and turns what the torques of a ``kind`` give by the links from ``first`` on.
 
     ``part`` says when in the step they act.
     """
     for link in range(first, links.shape[0]):
-        a, b = links[link, TO_A] & POSITIVE, links[link, TO_B] & POSITIVE
-        c = space[(links[link, FROM_C] & POSITIVE) + torque]
-        d = space[(links[link, FROM_D] & POSITIVE) + torque]
-        t = (links[link, LINK_AT] & POSITIVE) + part
-        speed_a, turn_a, speed_b, turn_b = _given(through, t, c, d)
-        space[b + SPEED] += speed_b
-        space[b + TURN] += turn_b
-        space[a + SPEED] += speed_a
-        space[a + TURN] += turn_a
+        c = torque_at(meshes, links[link, FROM_C], kind)
+        d = torque_at(meshes, links[link, FROM_D], kind)
+        speed_a, turn_a, speed_b, turn_b = _given(through, (links[link, LINK_AT] & POSITIVE) + part, c, d)
+        move_port(meshes, links[link, TO_B], speed_b, turn_b)
+        move_port(meshes, links[link, TO_A], speed_a, turn_a)
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def _look(further: Integers, block: int, bank: Array, space: Array) -> None:
+def _look(further: Integers, block: int, bank: Array, meshes: Meshes) -> None:
     """Add the modes' part of the outputs of further ports."""
-    a, b = further[block, PORT_A], further[block, PORT_B]
+    number_a, number_b = further[block, PORT_A], further[block, PORT_B]
+    mesh_a, mesh_b = meshes[(number_a >> 1) & POSITIVE], meshes[(number_b >> 1) & POSITIVE]
+    a = mesh_a.wheel if number_a & 1 else mesh_a.pinion
+    b = mesh_b.wheel if number_b & 1 else mesh_b.pinion
     for group in range(further[block, GROUPS]):
         home = further[block, HOME_AT] + N_BANK * WIDTH * group
         g = further[block, BANK_AT] + N_BANK * WIDTH * group
         for i in range(WIDTH):
             real, imag = bank[home + i], bank[home + WIDTH + i]
-            for k, output in ((0, SPEED), (2, TURN)):
-                row_a, row_b = g + (8 + k) * WIDTH + i, g + (12 + k) * WIDTH + i
-                space[a + output] += bank[row_a] * real + bank[row_a + WIDTH] * imag
-                space[b + output] += bank[row_b] * real + bank[row_b + WIDTH] * imag
+            row_a, row_b = g + 8 * WIDTH + i, g + 12 * WIDTH + i
+            a.speed += bank[row_a] * real + bank[row_a + WIDTH] * imag
+            b.speed += bank[row_b] * real + bank[row_b + WIDTH] * imag
+            row_a, row_b = row_a + 2 * WIDTH, row_b + 2 * WIDTH
+            a.turn += bank[row_a] * real + bank[row_a + WIDTH] * imag
+            b.turn += bank[row_b] * real + bank[row_b + WIDTH] * imag
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def _push(further: Integers, block: int, bank: Array, space: Array) -> None:
+def _push(further: Integers, block: int, bank: Array, meshes: Meshes) -> None:
     """Add the torques of further ports to the state after the step."""
-    t_a, t_b = space[further[block, PORT_A] + OLD], space[further[block, PORT_B] + OLD]
+    t_a = torque_at(meshes, further[block, PORT_A], OLD)
+    t_b = torque_at(meshes, further[block, PORT_B], OLD)
     for group in range(further[block, GROUPS]):
         home = further[block, HOME_AT] + N_BANK * WIDTH * group
         g = further[block, BANK_AT] + N_BANK * WIDTH * group
@@ -206,39 +208,35 @@ def _push(further: Integers, block: int, bank: Array, space: Array) -> None:
 
 @inlined
 def step_modes(
-    blocks: Integers, further: Integers, links: Integers, bank: Array, through: Array, space: Array
+    blocks: Integers, further: Integers, links: Integers, bank: Array, through: Array, meshes: Meshes
 ) -> None:
     """Add to speeds and turns what modes and torques give and take the modes over the step.
 
     Ports beyond the first two of a branch look at its modes before and push them after that pass.
     """
     for block in range(further.shape[0]):
-        _look(further, block, bank, space)
+        _look(further, block, bank, meshes)
     # what the torques give is known before the modes are: nothing waits for its sums
     for block in range(blocks.shape[0]):
         a, b = blocks[block, PORT_A] & POSITIVE, blocks[block, PORT_B] & POSITIVE
         t = blocks[block, THROUGH_AT] & POSITIVE
-        now = _given(through, t + AT_END, space[a + TAU], space[b + TAU])
-        start = _given(through, t + AT_START, space[a + OLD], space[b + OLD])
-        space[b + SPEED] += now[2] + start[2]
-        space[b + TURN] += now[3] + start[3]
-        space[a + SPEED] += now[0] + start[0]
-        space[a + TURN] += now[1] + start[1]
+        now = _given(through, t + AT_END, torque_at(meshes, a, NEW), torque_at(meshes, b, NEW))
+        start = _given(through, t + AT_START, torque_at(meshes, a, OLD), torque_at(meshes, b, OLD))
+        move_port(meshes, b, now[2] + start[2], now[3] + start[3])
+        move_port(meshes, a, now[0] + start[0], now[1] + start[1])
     for block in range(blocks.shape[0]):
         a, b = blocks[block, PORT_A] & POSITIVE, blocks[block, PORT_B] & POSITIVE
         first = blocks[block, BANK_AT] & POSITIVE
         speed_a, turn_a, speed_b, turn_b = pass_modes(
-            bank, first, blocks[block, GROUPS], space[a + OLD], space[b + OLD]
+            bank, first, blocks[block, GROUPS], torque_at(meshes, a, OLD), torque_at(meshes, b, OLD)
         )
-        space[b + SPEED] += speed_b
-        space[b + TURN] += turn_b
-        space[a + SPEED] += speed_a
-        space[a + TURN] += turn_a
+        move_port(meshes, b, speed_b, turn_b)
+        move_port(meshes, a, speed_a, turn_a)
     for block in range(further.shape[0]):
-        _push(further, block, bank, space)
+        _push(further, block, bank, meshes)
     if links.shape[0] > blocks.shape[0]:
-        add_torques(links, blocks.shape[0], through, AT_START, space, OLD)
-        add_torques(links, blocks.shape[0], through, AT_END, space, TAU)
+        add_torques(links, blocks.shape[0], through, AT_START, meshes, OLD)
+        add_torques(links, blocks.shape[0], through, AT_END, meshes, NEW)
 
 
 @njit(cache=True, fastmath=LOOSE)

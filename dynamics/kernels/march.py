@@ -39,36 +39,7 @@ from dynamics.kernels.mesh_solve import (
     look_ahead,
     meet_others,
 )
-from dynamics.kernels.mesh_workspace import (
-    ANGLE,
-    APART,
-    APART_RATE,
-    APPROACH,
-    FILTERED,
-    GIVEN,
-    GIVEN_OLD,
-    LEAN,
-    LEAN_RATE,
-    MISSING,
-    N_SPACE,
-    NET,
-    OFFSET,
-    OFFSET_RATE,
-    OLD,
-    OLDER,
-    OLDEST,
-    PORT,
-    RATE,
-    REACH,
-    SPEED,
-    TAU,
-    TEETH,
-    TEETH_OLD,
-    TURN,
-    TURN_OLD,
-    aligned,
-    aligned_zeros,
-)
+from dynamics.kernels.mesh_workspace import MISSING, NEW, OLD, STEP, Meshes, aligned, aligned_zeros, torque_at
 from dynamics.kernels.wrench import (
     WrenchModes,
     forces_on_ports,
@@ -115,7 +86,7 @@ def march(
         ends=np.zeros(n_rows if len(carried.work) else len(carried.slow)),
         torques=np.zeros((2, 2 * n_meshes + n_drags + len(carried.wrench))),
         give=np.zeros(4 * n_meshes**2),
-        space=np.zeros((n_meshes + 1) * N_SPACE),
+        meshes=np.zeros(n_meshes + 1, STEP),
         target=np.zeros(len(carried.slow)),
         fresh=np.zeros(len(carried.work)),
         beside=np.zeros(4 * n_meshes * wrench.every),
@@ -131,24 +102,26 @@ def compiled() -> bool:
 
 
 @inlined
-def _begin(space: Array, values: Array, carried: Carried, port_new: Array, give: Array, step: float) -> None:
+def _begin(
+    meshes: Meshes, values: Array, carried: Carried, port_new: Array, give: Array, step: float
+) -> None:
     """Take over the state of the last call, and what the torques give to the meshes."""
     ports, offset = carried.ports, carried.offset
     n_meshes = ports.shape[0]
     for m in range(n_meshes):
-        at = m * N_SPACE
+        mesh = meshes[m]
         for side in range(2):
-            port = at + side * PORT
-            space[port + OLD], space[port + OLDER] = ports[m, side], ports[m, 2 + side]
-            space[port + OLDEST] = ports[m, 4 + side]
-        space[at + APPROACH], space[at + ANGLE] = ports[m, 6], ports[m, 7]
-        space[at + GIVEN], space[at + GIVEN_OLD] = ports[m, 8], ports[m, 9]
-        space[at + SPEED], space[at + PORT + SPEED] = ports[m, 10], ports[m, 11]
+            acting = mesh.pinion if side == 0 else mesh.wheel
+            acting.torque_old, acting.torque_older = ports[m, side], ports[m, 2 + side]
+            acting.torque_oldest = ports[m, 4 + side]
+        mesh.approach, mesh.angle = ports[m, 6], ports[m, 7]
+        mesh.given, mesh.given_old = ports[m, 8], ports[m, 9]
+        mesh.pinion.speed, mesh.wheel.speed = ports[m, 10], ports[m, 11]
         # rates that are straight on, or the first hold is repeated
-        space[at + TURN] = space[at + TURN_OLD] = step * ports[m, 10]
+        mesh.pinion.turn = mesh.pinion.turn_old = step * ports[m, 10]
         rate = values[m, V_R1] * ports[m, 10] - values[m, V_R2] * ports[m, 11]
-        space[at + TEETH] = ports[m, 6] + offset[m] - ports[m, 8]
-        space[at + TEETH_OLD] = space[at + TEETH] - step * rate
+        mesh.teeth = ports[m, 6] + offset[m] - ports[m, 8]
+        mesh.teeth_old = mesh.teeth - step * rate
         for port in range(2 * n_meshes):
             for k in range(2):
                 given_1, given_2 = port_new[port, 4 * m + k], port_new[port, 4 * m + 2 + k]
@@ -157,61 +130,62 @@ def _begin(space: Array, values: Array, carried: Carried, port_new: Array, give:
 
 
 @inlined
-def _end(space: Array, ports: Array) -> None:
+def _end(meshes: Meshes, ports: Array) -> None:
     """Write the state for the next call."""
     for m in range(ports.shape[0]):
-        at = m * N_SPACE
+        mesh = meshes[m]
         for side in range(2):
-            port = at + side * PORT
-            ports[m, side], ports[m, 2 + side] = space[port + OLD], space[port + OLDER]
-            ports[m, 4 + side] = space[port + OLDEST]
-        ports[m, 6], ports[m, 7] = space[at + APPROACH], space[at + ANGLE]
-        ports[m, 8], ports[m, 9] = space[at + GIVEN], space[at + GIVEN_OLD]
-        ports[m, 10], ports[m, 11] = space[at + SPEED], space[at + PORT + SPEED]
+            port = mesh.pinion if side == 0 else mesh.wheel
+            ports[m, side], ports[m, 2 + side] = port.torque_old, port.torque_older
+            ports[m, 4 + side] = port.torque_oldest
+        ports[m, 6], ports[m, 7] = mesh.approach, mesh.angle
+        ports[m, 8], ports[m, 9] = mesh.given, mesh.given_old
+        ports[m, 10], ports[m, 11] = mesh.pinion.speed, mesh.wheel.speed
 
 
 @inlined
-def _guess(tables: ContactTables, space: Array, held: HeldRows, by_slow: Array, first: int) -> None:
+def _guess(tables: ContactTables, meshes: Meshes, held: HeldRows, by_slow: Array, first: int) -> None:
     """Begin a step: the parabola through the last three torques, speeds and turns with what the slow inputs give.
 
     The meshes are held where angle and approach go straight on.
     """
     for m in range(tables.values.shape[0]):
-        at, given = (m * N_SPACE) & POSITIVE, (first + 4 * m) & POSITIVE
-        wheel = at + PORT
-        space[at + TAU] = 3.0 * (space[at + OLD] - space[at + OLDER]) + space[at + OLDEST]
-        space[wheel + TAU] = 3.0 * (space[wheel + OLD] - space[wheel + OLDER]) + space[wheel + OLDEST]
-        turned = space[at + TURN]
-        space[at + LEAN] += space[at + LEAN_RATE]
-        angle = space[at + ANGLE] + 2.0 * turned - space[at + TURN_OLD] + space[at + LEAN]
-        teeth = 2.0 * space[at + TEETH] - space[at + TEETH_OLD]
-        space[at + TURN_OLD], space[at + TEETH_OLD] = turned, space[at + TEETH]
-        find_place(tables, space, at, m, held, angle, teeth)
-        space[at + SPEED], space[at + TURN] = by_slow[given], by_slow[given + 1]
-        space[wheel + SPEED], space[wheel + TURN] = by_slow[given + 2], by_slow[given + 3]
-        last = space[at + GIVEN]
-        space[at + GIVEN] = 2.0 * last - space[at + GIVEN_OLD]
-        space[at + GIVEN_OLD] = last
+        mesh, given = meshes[m & POSITIVE], (first + 4 * m) & POSITIVE
+        mesh.pinion.torque = (
+            3.0 * (mesh.pinion.torque_old - mesh.pinion.torque_older) + mesh.pinion.torque_oldest
+        )
+        mesh.wheel.torque = 3.0 * (mesh.wheel.torque_old - mesh.wheel.torque_older) + mesh.wheel.torque_oldest
+        turned = mesh.pinion.turn
+        mesh.lean += mesh.lean_rate
+        angle = mesh.angle + 2.0 * turned - mesh.pinion.turn_old + mesh.lean
+        teeth = 2.0 * mesh.teeth - mesh.teeth_old
+        mesh.pinion.turn_old, mesh.teeth_old = turned, mesh.teeth
+        find_place(tables, mesh, m, held, angle, teeth)
+        mesh.pinion.speed, mesh.pinion.turn = by_slow[given], by_slow[given + 1]
+        mesh.wheel.speed, mesh.wheel.turn = by_slow[given + 2], by_slow[given + 3]
+        last = mesh.given
+        mesh.given = 2.0 * last - mesh.given_old
+        mesh.given_old = last
     for m in range(tables.values.shape[0]):
-        hold_mesh(tables, space, (m * N_SPACE) & POSITIVE, m, held)
+        hold_mesh(tables, meshes[m & POSITIVE], m, held)
 
 
 @inlined
-def _next_step(space: Array, n_meshes: int) -> None:
+def _next_step(meshes: Meshes, n_meshes: int) -> None:
     """Let the torques of the step be old ones."""
     for m in range(n_meshes):
-        for port in ((m * N_SPACE) & POSITIVE, (m * N_SPACE + PORT) & POSITIVE):
-            space[port + OLDEST], space[port + OLDER] = space[port + OLDER], space[port + OLD]
-            space[port + OLD] = space[port + TAU]
+        mesh = meshes[m & POSITIVE]
+        for port in (mesh.pinion, mesh.wheel):
+            port.torque_oldest, port.torque_older = port.torque_older, port.torque_old
+            port.torque_old = port.torque
 
 
 @inlined
-def _keep_torques(space: Array, n_meshes: int, drags: Array, change: Array, torques: Array) -> None:
+def _keep_torques(meshes: Meshes, n_meshes: int, drags: Array, change: Array, torques: Array) -> None:
     """Fill the torques at start and end of the step, see ``end_rows``."""
     n_ports = 2 * n_meshes
     for port in range(n_ports):
-        at = port // 2 * N_SPACE + port % 2 * PORT
-        torques[0, port], torques[1, port] = space[at + OLD], space[at + TAU]
+        torques[0, port], torques[1, port] = torque_at(meshes, port, OLD), torque_at(meshes, port, NEW)
     for d in range(drags.shape[0]):
         torques[0, n_ports + d], torques[1, n_ports + d] = drags[d] - change[d], drags[d]
 
@@ -240,22 +214,22 @@ def _march(
     values = tables.values
     blocks, further, links, through = modes.blocks, modes.further, modes.links, modes.through
     state, slow = carried.state, carried.slow
-    bank, space, give, by_slow, torques = work.bank, work.space, work.give, work.slow_outputs, work.torques
+    bank, meshes, give, by_slow, torques = work.bank, work.meshes, work.give, work.slow_outputs, work.torques
     n_meshes, n_slow = values.shape[0], slow.shape[0]
     drags, n_drags = carried.drags, carried.drags.shape[0]
     keeps_accounts = carried.work.shape[0] > 0
     n_outputs = 4 * n_meshes + modes.rows.shape[0]
 
-    _begin(space, values, carried, modes.port_new, give, step)
+    _begin(meshes, values, carried, modes.port_new, give, step)
     put_state(blocks, state, bank)
     forces = carried.wrench
     presses_beside = forces.shape[0] > 0
     if presses_beside:
-        set_sides(wrench, space)
+        set_sides(wrench, meshes)
     for m in range(n_meshes):
-        at = m * N_SPACE
-        space[at + APART], space[at + APART_RATE] = carried.apart[0, m], carried.apart[1, m]
-        space[at + LEAN], space[at + LEAN_RATE] = carried.apart[2, m], carried.apart[3, m]
+        mesh = meshes[m]
+        mesh.apart, mesh.apart_rate = carried.apart[0, m], carried.apart[1, m]
+        mesh.lean, mesh.lean_rate = carried.apart[2, m], carried.apart[3, m]
     mean_torque = carried.controller[2]
     torque_share = values[0, V_R1] / substeps
     unconverged = 0
@@ -273,20 +247,21 @@ def _march(
         hold_slow(modes.slow_outputs, slow, work.target, substeps, by_slow)
         for m in range(n_meshes):
             rate = (commands.offsets[sample, m] - carried.offset[m]) / (substeps * step)
-            space[m * N_SPACE + OFFSET], space[m * N_SPACE + OFFSET_RATE] = carried.offset[m], rate
-            choose_friction(tables, space, (m * N_SPACE) & POSITIVE, m, work.held)
+            mesh = meshes[m & POSITIVE]
+            mesh.offset, mesh.offset_rate = carried.offset[m], rate
+            choose_friction(tables, mesh, m, work.held)
         mean_torque = 0.0
         for sub in range(substeps):
             slow_at = sub * n_outputs
-            _guess(tables, space, work.held, by_slow, slow_at)
+            _guess(tables, meshes, work.held, by_slow, slow_at)
             if n_drags:
-                drags_on_ports(modes.drags, drags, work.drags.outputs, space)
+                drags_on_ports(modes.drags, drags, work.drags.outputs, meshes)
             if presses_beside:
                 part = sub % wrench.every
                 if part == 0:
                     give_to_ports(wrench, forces, work.beside)
-                forces_on_ports(work.beside, part, n_meshes, space)
-            step_modes(blocks, further, links, bank, through, space)
+                forces_on_ports(work.beside, part, n_meshes, meshes)
+            step_modes(blocks, further, links, bank, through, meshes)
             if n_drags:
                 push_drags(modes.drags, blocks, drags, bank)
             interval_ends = presses_beside and (sub + 1) % wrench.every == 0
@@ -296,19 +271,19 @@ def _march(
             attempt = 0
             while attempt < MOST_ITERATIONS and not converged:
                 for m in range(n_meshes):
-                    at = (m * N_SPACE) & POSITIVE
-                    look_ahead(space, at, values, m, step)
-                    look(tables, space, at, m, work.held, attempt > 0)
+                    mesh = meshes[m & POSITIVE]
+                    look_ahead(mesh, values, m, step)
+                    look(tables, mesh, m, work.held, attempt > 0)
                 for m in range(n_meshes):
-                    at = (m * N_SPACE) & POSITIVE
-                    invert(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
-                    correct_alone(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
-                converged = meet_others(space, values, give, n_meshes)
-                add_torques(links, 0, through, AT_END, space, MISSING)
+                    mesh = meshes[m & POSITIVE]
+                    invert(mesh, give, (4 * m * (n_meshes + 1)) & POSITIVE)
+                    correct_alone(mesh, give, (4 * m * (n_meshes + 1)) & POSITIVE)
+                converged = meet_others(meshes, values, give, n_meshes)
+                add_torques(links, 0, through, AT_END, meshes, MISSING)
                 attempt += 1
             if n_drags:
                 braked = brake(
-                    commands.drags, modes.drags, blocks, bank, values, space, by_slow, slow_at + 4 * n_meshes + n_slow,
+                    commands.drags, modes.drags, blocks, bank, values, meshes, by_slow, slow_at + 4 * n_meshes + n_slow,
                     drags, work.drags,
                 )  # fmt: skip
                 converged = converged and braked
@@ -318,37 +293,37 @@ def _march(
             if kept:
                 _keep_forces(forces, torques[0])
             if presses_beside:
-                gather_forces(wrench, values, space, work.mean_forces)
+                gather_forces(wrench, values, meshes, work.mean_forces)
             if interval_ends:
                 set_forces(wrench, forces, work.mean_forces)
             if kept:
                 _keep_forces(forces, torques[1])
-                _keep_torques(space, n_meshes, drags, work.drags.change, torques)
+                _keep_torques(meshes, n_meshes, drags, work.drags.change, torques)
                 take_state(blocks, bank, state)
                 end_rows(modes, state, torques, by_slow, slow_at + 4 * n_meshes, work.ends)
             if keeps_accounts:  # while the angles are those of the start of the step
                 account(tables, modes, wrench, carried, work, step, (sub + 1.0) / substeps)
             if interval_ends:
                 last = sub == substeps - 1
-                part_flanks(wrench, values, blocks, bank, space, forces, step, last)
+                part_flanks(wrench, values, blocks, bank, meshes, forces, step, last)
                 if last or wrench.every == 1:
-                    lean_pinions(wrench, blocks, bank, space, forces, 1 if wrench.every == 1 else substeps)
+                    lean_pinions(wrench, blocks, bank, meshes, forces, 1 if wrench.every == 1 else substeps)
             for m in range(n_meshes):
-                at = (m * N_SPACE) & POSITIVE
-                space[at + OFFSET] += step * space[at + OFFSET_RATE]
-                space[at + APPROACH] = space[at + REACH] - space[at + OFFSET]
-                space[at + ANGLE] += space[at + TURN]
-                history[m, 0, now] = space[at + NET]
-                history[m, 1, now] = space[at + FILTERED]
+                mesh = meshes[m & POSITIVE]
+                mesh.offset += step * mesh.offset_rate
+                mesh.approach = mesh.reach - mesh.offset
+                mesh.angle += mesh.pinion.turn
+                history[m, 0, now] = mesh.net
+                history[m, 1, now] = mesh.filtered
                 if history.shape[1] > 2:
-                    history[m, 2, now] = space[at + REACH]
-                    history[m, 3, now] = space[at + ANGLE]
-                    history[m, 4, now] = space[at + RATE]
-                    history[m, 5, now] = space[at + SPEED]
-                    history[m, 6, now] = space[at + TAU]
-            mean_torque += space[NET] * torque_share
+                    history[m, 2, now] = mesh.reach
+                    history[m, 3, now] = mesh.angle
+                    history[m, 4, now] = mesh.rate
+                    history[m, 5, now] = mesh.pinion.speed
+                    history[m, 6, now] = mesh.pinion.torque
+            mean_torque += meshes[0].net * torque_share
             now += 1
-            _next_step(space, n_meshes)
+            _next_step(meshes, n_meshes)
         hold_slow(modes.slow_states, slow, work.target, substeps, state)
         put_state(blocks, state, bank)
         for k in range(n_slow):
@@ -358,21 +333,21 @@ def _march(
             samples[sample, n_slow + k] = work.ends[k]
         for d in range(n_drags):
             samples[sample, 2 * n_slow + d] = drags[d]
-        samples[sample, 2 * n_slow + n_drags] = space[ANGLE]
+        samples[sample, 2 * n_slow + n_drags] = meshes[0].angle
         if states.shape[0] > 0:
             for i in range(state.shape[0]):
                 states[sample, i] = state[i]
             for port in range(2 * n_meshes):
-                states[sample, state.shape[0] + port] = space[port // 2 * N_SPACE + port % 2 * PORT + OLD]
+                states[sample, state.shape[0] + port] = torque_at(meshes, port, OLD)
             for d in range(forces.shape[0]):
                 states[sample, state.shape[0] + 2 * n_meshes + d] = forces[d]
         for m in range(n_meshes):
             carried.offset[m] = commands.offsets[sample, m]
     for m in range(n_meshes):
-        at = m * N_SPACE
-        carried.apart[0, m], carried.apart[1, m] = space[at + APART], space[at + APART_RATE]
-        carried.apart[2, m], carried.apart[3, m] = space[at + LEAN], space[at + LEAN_RATE]
-    _end(space, carried.ports)
+        mesh = meshes[m]
+        carried.apart[0, m], carried.apart[1, m] = mesh.apart, mesh.apart_rate
+        carried.apart[2, m], carried.apart[3, m] = mesh.lean, mesh.lean_rate
+    _end(meshes, carried.ports)
     return unconverged
 
 
@@ -392,17 +367,17 @@ def account(
     """
     total, powers, slow = carried.work, carried.powers, carried.slow
     drags, speeds = carried.drags, carried.speeds
-    space, ends, fresh = work.space, work.ends, work.fresh
+    meshes, ends, fresh = work.meshes, work.ends, work.fresh
     n_meshes, n_slow = tables.values.shape[0], slow.shape[0]
     for m in range(n_meshes):
         lost, damped = 0.0, 0.0
         for side in range(2):
             if work.held.counts[m, side] > 0:
-                sliding, damping = flank_powers(tables, space, m * N_SPACE, m, side, work.held)
+                sliding, damping = flank_powers(tables, meshes[m & POSITIVE], m, side, work.held)
                 lost += sliding
                 damped += damping
         if carried.wrench.shape[0]:
-            lost += rubbed_beside(wrench, tables.values, modes.blocks, work.bank, space, carried.wrench, m)
+            lost += rubbed_beside(wrench, tables.values, modes.blocks, work.bank, meshes, carried.wrench, m)
         fresh[2 * m], fresh[2 * m + 1] = lost, damped
     for k in range(n_slow):
         fresh[2 * n_meshes + k] = (slow[k] + share * (work.target[k] - slow[k])) * ends[k]

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.held_flanks import HeldRows
+from dynamics.kernels.mesh_workspace import Meshes
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -98,8 +99,7 @@ class Workspace(NamedTuple):
     give: Array
     """Flat (n_meshes, n_meshes, 4): reach of another mesh per torque of both ports of one at the end of the step,
     then its rate."""
-    space: Array
-    """Flat (n_meshes + 1, N_SPACE), see ``kernels.mesh_workspace``."""
+    meshes: Meshes
     target: Array
     """(n_slow,) slow inputs at the end of the sample."""
     fresh: Array

@@ -1,80 +1,148 @@
-"""Mesh workspace: the state of each mesh within a step of the march, one row of numbers.
+"""State of the gear meshes within a step of the time integration: one record a mesh, in it one a port.
 
-It is a single flat array, ``space``, read at fixed offsets from the start of a row, so that the compiler keeps numbers
-that were just written in registers. A last row belongs to the place holder for a mesh that does not exist.
+The records stand in one structured array, from which the compiled loops read ``mesh.pinion.speed`` by name. A last
+record belongs to the place holder for a mesh that does not exist.
 """
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-(
-    APPROACH,  # without the imposed part, at the start of the step [m]
-    ANGLE,  # of the pinion, at the start of the step [rad]
-    OFFSET,  # imposed approach at the start of the step [m]
-    OFFSET_RATE,
-    REACH,  # approach and its rate at the end of the step, imposed ones included, moving with the torques
-    RATE,
-    AT_REACH,  # the same where the mesh was last looked at
-    AT_RATE,
-    TEETH,  # approach that the teeth see, where the mesh was last looked at, then at the end of the step [m]
-    TEETH_OLD,  # the same at the end of the last step
-    HELD_ANGLE,  # angle of the pinion at which the rows are held [rad]
-    FRACTION,  # of the cell of the path there
-    OFF,  # by how much the approach behind the bodies is off there [m]
-    SHARE,  # part of a change of the reach that the teeth take there [-]
-    LOW,  # range of the approach of the teeth in which the held rows are good [m]
-    HIGH,
-    GIVEN,  # part of the reach that bodies outside the table give, in this step and in the last [m]
-    GIVEN_OLD,
-    PRESSED,  # force of both flanks, and its derivatives over approach and rate
-    PRESSED_X,
-    PRESSED_V,
-    NET,  # force to be recorded, front less back, and its derivatives
-    NET_X,
-    NET_V,
-    FILTERED,  # force that acts in the march, front less back; its derivatives are those of NET
-    BENT,  # what a Newton step leaves out of the torque: over approach twice, over approach and rate
-    BENT_V,
-    LOWER,  # shares of two levels of friction, and how far sliding reverses per sliding speed, of the sample
-    UPPER,
-    PER_SPEED,
-    PATH_TORQUE,  # on the pinion by the change of the path and by dampers on it [N m]
-    OTHER_FRONT,  # 1 where the flank in front, and on the back, is not on the normal of the ports, else 0
-    OTHER_BACK,
-    APART,  # by how much the gears stand closer on that flank, at the end of the step [m]
-    APART_RATE,
-    LEAN,  # turn of the pinion from the centre line beyond that of its port, at the end of the step [rad]
-    LEAN_RATE,  # per step [rad]
-    OTHER_PRESSED,  # its normal force [N], and friction torque on the pinion less that on the wheel [N m]
-    OTHER_RUBBED,
-    INVERSE,  # of the Newton matrix, four numbers
-) = range(40)
-# of both ports, the pinion's first and the wheel's PORT further
-PORT = 11
-(
-    SPEED,  # at the end of the step [rad/s]
-    TURN,  # in the step [rad]
-    TURN_OLD,  # in the last step
-    TAU,  # torque at the end of the step [N m], then one, two and three steps earlier
-    OLD,
-    OLDER,
-    OLDEST,
-    MISSING,  # torque that speed and turn do not hold yet
-    REACTION,  # torque that the contacts answer where they were last looked at, and its derivatives
-    TANGENT_X,
-    TANGENT_V,
-) = range(INVERSE + 4, INVERSE + 4 + PORT)
-N_SPACE = INVERSE + 4 + 2 * PORT
+from dynamics.kernels.contact import POSITIVE, inlined
+
+Array = NDArray[np.float64]
+Meshes = NDArray[np.void]
+"""(n_meshes + 1,) of ``STEP``."""
 
 
-def port_place(port: int) -> int:
-    """Return the place of a port in the mesh workspace: port 2 m is the pinion of mesh m, 2 m + 1 its wheel."""
-    return port // 2 * N_SPACE + port % 2 * PORT
+class PortStep:
+    """A port of a mesh, where its pinion or its wheel acts on its shaft."""
+
+    speed: float
+    """At the end of the step [rad/s]."""
+    turn: float
+    """In the step [rad]."""
+    turn_old: float
+    """In the last step."""
+    torque: float
+    """At the end of the step [N m], then one, two and three steps earlier."""
+    torque_old: float
+    torque_older: float
+    torque_oldest: float
+    missing: float
+    """Torque that speed and turn do not hold yet."""
+    reaction: float
+    """Torque that the contacts answer where they were last looked at, then its derivatives over approach and rate."""
+    reaction_x: float
+    reaction_v: float
+
+
+class MeshStep:
+    """A mesh. Approaches are those of the gears, the imposed part included, unless said otherwise [m]."""
+
+    approach: float
+    """Without the imposed part, at the start of the step."""
+    angle: float
+    """Of the pinion, at the start of the step [rad]."""
+    offset: float
+    """Imposed approach at the start of the step."""
+    offset_rate: float
+    reach: float
+    """Approach and its rate at the end of the step, moving with the torques."""
+    rate: float
+    reach_seen: float
+    """The same where the mesh was last looked at."""
+    rate_seen: float
+    teeth: float
+    """Approach that the teeth see, where the mesh was last looked at, then at the end of the step."""
+    teeth_old: float
+    """The same at the end of the last step."""
+    table_angle: float
+    """Angle of the pinion at which the table was looked up [rad]."""
+    fraction: float
+    """Of the cell of the path there."""
+    off: float
+    """By how much the approach behind the bodies is off there."""
+    share: float
+    """Part of a change of the reach that the teeth take there [-]."""
+    low: float
+    """Range of the approach of the teeth in which the rows that were looked up are good."""
+    high: float
+    given: float
+    """Part of the reach that bodies outside the table give, in this step and in the last."""
+    given_old: float
+    force: float
+    """Of both flanks, and its derivatives over approach and rate."""
+    force_x: float
+    force_v: float
+    net: float
+    """Force to be recorded, front less back, and its derivatives."""
+    net_x: float
+    net_v: float
+    filtered: float
+    """Force that acts, front less back; its derivatives are those of ``net``."""
+    bent: float
+    """What a Newton step leaves out of the torque: over approach twice, over approach and rate."""
+    bent_v: float
+    lower: float
+    """Shares of two levels of friction, and how far sliding reverses per sliding speed, of the sample."""
+    upper: float
+    per_speed: float
+    path_torque: float
+    """On the pinion by the change of the path and by dampers on it [N m]."""
+    other_front: float
+    """1 where the flank in front, and on the back, is not on the normal of the ports, else 0."""
+    other_back: float
+    apart: float
+    """By how much the gears stand closer on that flank, at the end of the step, and its rate."""
+    apart_rate: float
+    lean: float
+    """Turn of the pinion from the centre line beyond that of its port, at the end of the step, and per step [rad]."""
+    lean_rate: float
+    other_force: float
+    """Normal force of that flank [N], and its friction torque on the pinion less that on the wheel [N m]."""
+    other_friction: float
+    inverse_11: float
+    """Inverse of the Newton matrix."""
+    inverse_12: float
+    inverse_21: float
+    inverse_22: float
+    pinion: PortStep
+    wheel: PortStep
+
+
+PORT: Any = np.dtype([(name, np.float64) for name in PortStep.__annotations__])
+STEP: Any = np.dtype([
+    (name, PORT if kind is PortStep else np.float64) for name, kind in MeshStep.__annotations__.items()
+])  # fmt: skip
+
+
+OLD, NEW, MISSING = range(3)
+"""Torques of a port: at the start of the step, at its end, and what speed and turn do not hold yet of that."""
+
+# Port 2 m is the pinion of mesh m, 2 m + 1 its wheel. A compiled function gives its caller a copy of a record, so that
+# none of these returns one.
+
+
+@inlined
+def torque_at(meshes: Meshes, number: int, kind: int) -> float:
+    """Return a torque of a port."""
+    mesh: MeshStep = meshes[(number >> 1) & POSITIVE]
+    port = mesh.wheel if number & 1 else mesh.pinion
+    return port.torque_old if kind == OLD else port.torque if kind == NEW else port.missing
+
+
+@inlined
+def move_port(meshes: Meshes, number: int, speed: float, turn: float) -> None:
+    """Add to speed and turn of a port."""
+    mesh: MeshStep = meshes[(number >> 1) & POSITIVE]
+    port = mesh.wheel if number & 1 else mesh.pinion
+    port.speed += speed
+    port.turn += turn
 
 
 # Arrays that begin with a cache line: what a kernel reads together then stands in one line, not in two.
-
-Array = NDArray[np.float64]
 
 LINE = 64
 """Bytes in a cache line."""

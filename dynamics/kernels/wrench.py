@@ -16,25 +16,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
 from dynamics.kernels.contact_table import V_BACKLASH, V_FRICTION, V_R1, V_R2
 from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, STATE_AT
-from dynamics.kernels.mesh_workspace import (
-    APART,
-    APART_RATE,
-    FILTERED,
-    LEAN,
-    LEAN_RATE,
-    N_SPACE,
-    OLD,
-    OTHER_BACK,
-    OTHER_FRONT,
-    OTHER_PRESSED,
-    OTHER_RUBBED,
-    PATH_TORQUE,
-    PORT,
-    SPEED,
-    TAU,
-    TEETH,
-    TURN,
-)
+from dynamics.kernels.mesh_workspace import NEW, OLD, Meshes, torque_at
 from dynamics.kernels.mode_pass import N_BANK, WIDTH, dot_modes, push_modes
 
 Array = NDArray[np.float64]
@@ -92,14 +74,14 @@ def give_to_ports(wrench: WrenchModes, forces: Array, outputs: Array) -> None:
 
 
 @inlined
-def forces_on_ports(outputs: Array, part: int, n_meshes: int, space: Array) -> None:
+def forces_on_ports(outputs: Array, part: int, n_meshes: int, meshes: Meshes) -> None:
     """Add to speeds and turns of the ports what was filled for one step of the interval."""
     for m in range(n_meshes):
-        at, out = (m * N_SPACE) & POSITIVE, (4 * (part * n_meshes + m)) & POSITIVE
-        space[at + SPEED] += outputs[out]
-        space[at + TURN] += outputs[out + 1]
-        space[at + PORT + SPEED] += outputs[out + 2]
-        space[at + PORT + TURN] += outputs[out + 3]
+        mesh, out = meshes[m & POSITIVE], (4 * (part * n_meshes + m)) & POSITIVE
+        mesh.pinion.speed += outputs[out]
+        mesh.pinion.turn += outputs[out + 1]
+        mesh.wheel.speed += outputs[out + 2]
+        mesh.wheel.turn += outputs[out + 3]
 
 
 @inlined
@@ -132,7 +114,7 @@ def _push_slide(push: Array, blocks: Integers, m: int, force: float, bank: Array
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def wrench_motion(
-    wrench: WrenchModes, blocks: Integers, bank: Array, space: Array, forces: Array, row: int
+    wrench: WrenchModes, blocks: Integers, bank: Array, meshes: Meshes, forces: Array, row: int
 ) -> float:
     """Return what a row of ``WrenchModes.rows`` sees at the end of the step, without what slow inputs gave since the
     start of the sample."""
@@ -143,26 +125,23 @@ def wrench_motion(
         at = (row * n_states + blocks[block, STATE_AT]) & POSITIVE
         total += dot_modes(bank, first, wrench.rows, at, blocks[block, GROUPS])
     for port in range(wrench.by_torque.shape[1]):
-        at = (port // 2 * N_SPACE + port % 2 * PORT) & POSITIVE
-        total += wrench.by_torque[0, port, row] * space[at + OLD]
-        total += wrench.by_torque[1, port, row] * space[at + TAU]
+        total += wrench.by_torque[0, port, row] * torque_at(meshes, port, OLD)
+        total += wrench.by_torque[1, port, row] * torque_at(meshes, port, NEW)
     for d in range(forces.shape[0]):
         total += wrench.by_force[d, row] * forces[d]
     return float(total)
 
 
 @inlined
-def gather_forces(wrench: WrenchModes, values: Array, space: Array, mean: Array) -> None:
+def gather_forces(wrench: WrenchModes, values: Array, meshes: Meshes, mean: Array) -> None:
     """Add the forces at the end of a step, whose mesh torques are known, to those of the interval."""
     numbers, n = wrench.numbers, wrench.n_rows
     for m in range(numbers.shape[0]):
-        at = (m * N_SPACE) & POSITIVE
-        path, normal = space[at + PATH_TORQUE], space[at + FILTERED]
-        mean[2 * m] += space[at + TAU] + values[m, V_R1] * normal + numbers[m, PATH_1] * path
-        mean[2 * m + 1] += space[at + PORT + TAU] - values[m, V_R2] * normal + numbers[m, PATH_2] * path
-        mean[n + m] += (
-            numbers[m, SPREAD] * space[at + OTHER_PRESSED] + numbers[m, ACROSS] * space[at + OTHER_RUBBED]
-        )
+        mesh = meshes[m & POSITIVE]
+        path, normal = mesh.path_torque, mesh.filtered
+        mean[2 * m] += mesh.pinion.torque + values[m, V_R1] * normal + numbers[m, PATH_1] * path
+        mean[2 * m + 1] += mesh.wheel.torque - values[m, V_R2] * normal + numbers[m, PATH_2] * path
+        mean[n + m] += numbers[m, SPREAD] * mesh.other_force + numbers[m, ACROSS] * mesh.other_friction
 
 
 @inlined
@@ -174,17 +153,17 @@ def set_forces(wrench: WrenchModes, forces: Array, mean: Array) -> None:
 
 
 @inlined
-def set_sides(wrench: WrenchModes, space: Array) -> None:
+def set_sides(wrench: WrenchModes, meshes: Meshes) -> None:
     """Say which flanks are the others."""
     for m in range(wrench.numbers.shape[0]):
-        at = (m * N_SPACE) & POSITIVE
+        mesh = meshes[m & POSITIVE]
         front = wrench.numbers[m, SIDE] < 0.0
-        space[at + OTHER_FRONT], space[at + OTHER_BACK] = (1.0, 0.0) if front else (0.0, 1.0)
+        mesh.other_front, mesh.other_back = (1.0, 0.0) if front else (0.0, 1.0)
 
 
 @inlined
 def part_flanks(
-    wrench: WrenchModes, values: Array, blocks: Integers, bank: Array, space: Array, forces: Array, step: float,
+    wrench: WrenchModes, values: Array, blocks: Integers, bank: Array, meshes: Meshes, forces: Array, step: float,
     last: bool,
 ) -> None:  # fmt: skip
     """Set by how much the gears stand closer on the other flanks than on those that carry, at the end of the next
@@ -192,47 +171,47 @@ def part_flanks(
     the backlash."""
     n_meshes = wrench.numbers.shape[0]
     for m in range(n_meshes):
-        at = (m * N_SPACE) & POSITIVE
-        touches = space[at + OTHER_PRESSED] > 0.0
+        mesh = meshes[m & POSITIVE]
+        touches = mesh.other_force > 0.0
         side, backlash = wrench.numbers[m, SIDE], values[m, V_BACKLASH]
-        reach = space[at + APART] - side * space[at + TEETH] - (backlash if side > 0.0 else 0.0)
+        reach = mesh.apart - side * mesh.teeth - (backlash if side > 0.0 else 0.0)
         if touches or (last and reach > -0.5 * backlash):
             per_slide, rate = -wrench.numbers[m, SPREAD], 0.0
-            place = per_slide * wrench_motion(wrench, blocks, bank, space, forces, 3 * n_meshes + m)
+            place = per_slide * wrench_motion(wrench, blocks, bank, meshes, forces, 3 * n_meshes + m)
             if touches:
-                rate = per_slide * wrench_motion(wrench, blocks, bank, space, forces, 2 * n_meshes + m)
-            space[at + APART], space[at + APART_RATE] = place + step * rate, rate
+                rate = per_slide * wrench_motion(wrench, blocks, bank, meshes, forces, 2 * n_meshes + m)
+            mesh.apart, mesh.apart_rate = place + step * rate, rate
 
 
 @inlined
 def lean_pinions(
-    wrench: WrenchModes, blocks: Integers, bank: Array, space: Array, forces: Array, steps: int
+    wrench: WrenchModes, blocks: Integers, bank: Array, meshes: Meshes, forces: Array, steps: int
 ) -> None:
     """Set by how much the pinions turn from the centre line beyond their ports, and how it goes on as in the last
     ``steps``; these turns give the place of a flank on its path."""
     n_meshes = wrench.numbers.shape[0]
     for m in range(n_meshes):
-        at = (m * N_SPACE) & POSITIVE
-        now = wrench_motion(wrench, blocks, bank, space, forces, 4 * n_meshes + m)
+        mesh = meshes[m & POSITIVE]
+        now = wrench_motion(wrench, blocks, bank, meshes, forces, 4 * n_meshes + m)
         # the rate that was taken led from the last turn to that which stands
-        before = space[at + LEAN] - steps * space[at + LEAN_RATE]
-        space[at + LEAN], space[at + LEAN_RATE] = now, (now - before) / steps
+        before = mesh.lean - steps * mesh.lean_rate
+        mesh.lean, mesh.lean_rate = now, (now - before) / steps
 
 
 @inlined
 def rubbed_beside(
-    wrench: WrenchModes, values: Array, blocks: Integers, bank: Array, space: Array, forces: Array, m: int
+    wrench: WrenchModes, values: Array, blocks: Integers, bank: Array, meshes: Meshes, forces: Array, m: int
 ) -> float:
     """Return what friction of a mesh takes on its rows beside the ports [W]."""
     n_meshes = wrench.numbers.shape[0]
     if values[m, V_FRICTION] == 0.0:
         return 0.0
-    at = (m * N_SPACE) & POSITIVE
-    torque_1 = space[at + TAU] + values[m, V_R1] * space[at + FILTERED] - space[at + PATH_TORQUE]
-    torque_2 = space[at + PORT + TAU] - values[m, V_R2] * space[at + FILTERED]
-    across = wrench.numbers[m, ACROSS] * space[at + OTHER_RUBBED]
-    power = torque_1 * wrench_motion(wrench, blocks, bank, space, forces, 2 * m)
-    power += torque_2 * wrench_motion(wrench, blocks, bank, space, forces, 2 * m + 1)
+    mesh = meshes[m & POSITIVE]
+    torque_1 = mesh.pinion.torque + values[m, V_R1] * mesh.filtered - mesh.path_torque
+    torque_2 = mesh.wheel.torque - values[m, V_R2] * mesh.filtered
+    across = wrench.numbers[m, ACROSS] * mesh.other_friction
+    power = torque_1 * wrench_motion(wrench, blocks, bank, meshes, forces, 2 * m)
+    power += torque_2 * wrench_motion(wrench, blocks, bank, meshes, forces, 2 * m + 1)
     if across != 0.0:
-        power += across * wrench_motion(wrench, blocks, bank, space, forces, 2 * n_meshes + m)
+        power += across * wrench_motion(wrench, blocks, bank, meshes, forces, 2 * n_meshes + m)
     return float(-power)

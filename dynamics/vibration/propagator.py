@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
-from dynamics.kernels import FOUR, WIDTH, DiscreteModes, DragModes, WrenchModes, port_place
+from dynamics.kernels import FOUR, WIDTH, DiscreteModes, DragModes, WrenchModes
 from dynamics.rotor.graph import TorqueSection, TwistRows
 from dynamics.rotor.linear_system import MeshWrench
 from dynamics.vibration.modal_model import ModalModel
@@ -110,15 +110,14 @@ def port_blocks(port_branches: Integers, layout: ModalLayout, response: StepResp
         home, groups = sum(map(len, bank)), (stop - start) // (2 * WIDTH)
         for number, pair in enumerate(pairs):
             outputs = [2 * pair[0], 2 * pair[0] + 1, 2 * pair[1], 2 * pair[1] + 1]
-            to = tuple(map(port_place, pair))
             for source, acting in enumerate(pairs):
                 at = sum(map(len, linked))
                 linked.append(through[:, outputs][:, :, acting].ravel())
                 to_itself = source == number == 0
-                (own if to_itself else others).append((*to, *map(port_place, acting), at))
+                (own if to_itself else others).append((*pair, *acting, at))
                 if source == number:
                     bank_at = sum(map(len, bank))
-                    (further if number else blocks).append((start, bank_at, home, groups, *to, at))
+                    (further if number else blocks).append((start, bank_at, home, groups, *pair, at))
             table = np.stack((np.zeros_like(fades), fades, *pushes[pair], *seen[outputs]))[:, start:stop]
             bank.append(table.reshape(-1, groups, 2 * WIDTH).swapaxes(0, 1).ravel())
     return PortBlocks(

@@ -8,25 +8,7 @@ import scipy.linalg
 from numba import njit
 
 from dynamics.kernels.mesh_solve import left_open
-from dynamics.kernels.mesh_workspace import (
-    BENT,
-    BENT_V,
-    GIVEN,
-    HIGH,
-    LOW,
-    N_SPACE,
-    NET,
-    NET_V,
-    NET_X,
-    OFF,
-    PRESSED,
-    PRESSED_V,
-    PRESSED_X,
-    RATE,
-    REACH,
-    SHARE,
-    TEETH,
-)
+from dynamics.kernels.mesh_workspace import STEP
 from dynamics.rotor.linear_system import LinearSystem
 from dynamics.vibration.march_inputs import DriveLoads, DriveState, MarchSettings, drag_loads, slow_loads
 from dynamics.vibration.modal_model import modal_model
@@ -34,7 +16,7 @@ from dynamics.vibration.propagator import discretise
 from dynamics.vibration.time_integration import MarchDiverged, TimeMarch
 from tests.builders.mesh import chain, spur_law, two_bodies
 
-left_open_at = njit(lambda space, at: left_open(space, at))
+left_open_of = njit(lambda meshes: left_open(meshes[0]))
 OPEN = spur_law(backlash=1.0, offset=-0.5)
 """A mesh whose flanks never touch: the linear part alone."""
 
@@ -256,27 +238,27 @@ def test_critical_damping_is_still_accurate() -> None:
 
 @pytest.mark.parametrize(
     ("changes", "known"),
-    [({}, True), ({HIGH: 30.001e-6}, False), ({LOW: 30.002e-6}, False), ({PRESSED: 0.1}, False)],
+    [({}, True), ({"high": 30.001e-6}, False), ({"low": 30.002e-6}, False), ({"force": 0.1}, False)],
 )
-def test_a_step_of_a_mesh_is_off_its_tangent_by_what_bends(changes: dict[int, float], known: bool) -> None:
-    """3 nm of the gears, of which the teeth take two thirds less what they were off: known within the held rows, and as
-    long as the damper leaves a force."""
-    space = np.zeros(N_SPACE)
-    for place, value in {
-        REACH: 3e-9, RATE: -2e-4, OFF: -0.5e-9, SHARE: 2.0 / 3.0, TEETH: 30e-6, LOW: 29e-6, HIGH: 31e-6, PRESSED: 100.0,
-        PRESSED_X: 1e9, PRESSED_V: 1e4, NET: 100.0, NET_X: 1e9, NET_V: 1e4, BENT: 1e12, BENT_V: 5e4,
+def test_a_step_of_a_mesh_is_off_its_tangent_by_what_bends(changes: dict[str, float], known: bool) -> None:
+    """3 nm of the gears, of which the teeth take two thirds less what they were off: known within the rows looked up,
+    and as long as the damper leaves a force."""
+    meshes = np.zeros(1, STEP)
+    for name, value in {
+        "reach": 3e-9, "rate": -2e-4, "off": -0.5e-9, "share": 2.0 / 3.0, "teeth": 30e-6, "low": 29e-6, "high": 31e-6,
+        "force": 100.0, "force_x": 1e9, "force_v": 1e4, "net": 100.0, "net_x": 1e9, "net_v": 1e4, "bent": 1e12,
+        "bent_v": 5e4, **changes,
     }.items():  # fmt: skip
-        space[place] = value
-    for place, value in changes.items():
-        space[place] = value
+        meshes[name] = value
     moved = 1.5e-9
-    left = left_open_at(space, 0)
+    left = left_open_of(meshes)
+    (mesh,) = meshes
     assert left == (pytest.approx(1e12 * moved**2 + 5e4 * moved * 2e-4) if known else np.inf)
-    assert space[TEETH] == pytest.approx(30e-6 + moved, rel=1e-12)
-    assert space[GIVEN] == pytest.approx(3e-9 - 30e-6 - moved, rel=1e-12)
-    assert space[NET] == pytest.approx(100.0 + 1e9 * moved - 1e4 * 2e-4)
+    assert mesh["teeth"] == pytest.approx(30e-6 + moved, rel=1e-12)
+    assert mesh["given"] == pytest.approx(3e-9 - 30e-6 - moved, rel=1e-12)
+    assert mesh["net"] == pytest.approx(100.0 + 1e9 * moved - 1e4 * 2e-4)
 
 
 def test_a_kernel_without_a_wrapper_says_so_where_python_calls_it() -> None:
     with pytest.raises(TypeError, match="left_open has no wrapper for Python"):
-        left_open(np.zeros(N_SPACE), 0)
+        left_open(np.zeros(1, STEP)[0])
