@@ -142,8 +142,8 @@ def slice_sums(springs: SliceSprings, law: NodeLaw, approach: Array, sums: Array
 # Where the faces tilt against each other, W is tabulated at some tilts with the tilting moment ``dW/dtilt`` and a cubic
 # over the tilt by both (Hermite), again one potential.
 #
-# ``kernels.hold_path`` contracts the splines of every pair that can touch to one row of numbers, a cubic in y, at a
-# place on the path; ``kernels.press_rows`` sums the rows. Built by ``dynamics.tooth.contact_table``.
+# ``kernels.table_lookup`` contracts the splines of every pair that can touch to one row of numbers, a cubic in y, at a
+# place on the path; ``kernels.contact_force`` sums the rows. Built by ``dynamics.tooth.contact_table``.
 
 Integers = NDArray[np.int64]
 

@@ -1,4 +1,4 @@
-"""Drag torques of bearings, windage, oil and seals within one step of the march.
+"""Drag torques of bearings, windage, oil and seals within one step of the time integration.
 
 Each is a function of the speed of its own place, evaluated at the end of the same step that it acts on, all drag
 torques of a line together. A torque that is linear between the ends of a step works on a vibration of any frequency
@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined, sliding_direction
 from dynamics.kernels.contact_table import V_R1, V_R2
+from dynamics.kernels.integrator_state import NEW, OLD, Meshes, torque_at
 from dynamics.kernels.linear_step import BANK_AT, FOUR, STATE_AT, DragModes
-from dynamics.kernels.mesh_workspace import NEW, OLD, Meshes, torque_at
-from dynamics.kernels.mode_pass import N_BANK, WIDTH
+from dynamics.kernels.modal_step import N_BANK, WIDTH
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]

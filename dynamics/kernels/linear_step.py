@@ -12,8 +12,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
-from dynamics.kernels.mesh_workspace import NEW, OLD, Meshes, move_port, torque_at
-from dynamics.kernels.mode_pass import N_BANK, WIDTH, pass_modes
+from dynamics.kernels.integrator_state import NEW, OLD, Meshes, move_port, torque_at
+from dynamics.kernels.modal_step import N_BANK, WIDTH, advance_modes
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -70,7 +70,7 @@ class DiscreteModes(NamedTuple):
     further: Integers
     """(n, 7) the other ports of branches with more than two."""
     bank: Array
-    """Flat, per block and group: N_BANK rows; the rows of the state are filled by a march."""
+    """Flat, per block and group: N_BANK rows; the rows of the state are filled by a time integration."""
     links: Integers
     """(n_links, 5) two ports, two ports of the same branch that act on them, first entry in ``through``; ports that
     act on themselves first, in the order of ``blocks``."""
@@ -227,7 +227,7 @@ def step_modes(
     for block in range(blocks.shape[0]):
         a, b = blocks[block, PORT_A] & POSITIVE, blocks[block, PORT_B] & POSITIVE
         first = blocks[block, BANK_AT] & POSITIVE
-        speed_a, turn_a, speed_b, turn_b = pass_modes(
+        speed_a, turn_a, speed_b, turn_b = advance_modes(
             bank, first, blocks[block, GROUPS], torque_at(meshes, a, OLD), torque_at(meshes, b, OLD)
         )
         move_port(meshes, b, speed_b, turn_b)

@@ -1,7 +1,7 @@
-"""Newton steps on the torques of gear meshes within one step of the march.
+"""Newton steps on the torques of gear meshes within one step of the time integration.
 
 At the angle that a mesh is predicted to reach its contact table is contracted to cubics over the approach
-(``kernels.hold_path``); a Newton step on reach and rate then leaves out what bends within it. Only where that is too
+(``kernels.table_lookup``); a Newton step on reach and rate then leaves out what bends within it. Only where that is too
 much, where the approach leaves the cell of the table, or where a damper lets go of a flank is the mesh looked at again.
 Meshes that share a shaft move each other; their tangents are swept until all torques agree.
 """
@@ -11,6 +11,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
+from dynamics.kernels.contact_force import (
+    Pressing,
+    Sums,
+    advance_of,
+    contact_force,
+    powers,
+    reversal_per_speed,
+)
 from dynamics.kernels.contact_table import (
     V_BACKLASH,
     V_BODY,
@@ -19,10 +27,9 @@ from dynamics.kernels.contact_table import (
     V_R2,
     ContactTables,
 )
-from dynamics.kernels.held_flanks import HeldRows, find_place, hold_mesh, is_held
-from dynamics.kernels.hold_path import sliding_at
-from dynamics.kernels.mesh_workspace import Meshes, MeshStep
-from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
+from dynamics.kernels.flank_lookup import FlankRows, find_place, look_up_mesh, within_rows
+from dynamics.kernels.integrator_state import Meshes, MeshStep
+from dynamics.kernels.table_lookup import sliding_at
 
 Array = NDArray[np.float64]
 
@@ -31,11 +38,11 @@ Integers = NDArray[np.int64]
 
 
 @inlined
-def choose_friction(tables: ContactTables, mesh: MeshStep, m: int, held: HeldRows) -> None:
+def choose_friction(tables: ContactTables, mesh: MeshStep, m: int, flanks: FlankRows) -> None:
     """Keep the friction of a mesh at its last speeds for the steps of a sample."""
     omega_1, omega_2 = mesh.pinion.speed, mesh.wheel.speed
     sliding = sliding_at(tables, m, omega_1, omega_2)
-    held.levels[m] = sliding.level
+    flanks.levels[m] = sliding.level
     mesh.lower, mesh.upper = sliding.lower, sliding.upper
     mesh.per_speed = reversal_per_speed(tables.values, m, omega_1 + omega_2)
 
@@ -83,13 +90,13 @@ def _set_flank(mesh: MeshStep, values: Array, m: int, sign: float, sums: Sums) -
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
-def _add_back(tables: ContactTables, mesh: MeshStep, m: int, held: HeldRows) -> None:
+def _add_back(tables: ContactTables, mesh: MeshStep, m: int, flanks: FlankRows) -> None:
     """Add what the back flank answers to the reaction of a mesh whose front flank touches too."""
     values = tables.values
     r_1, r_2 = values[m, V_R1], values[m, V_R2]
-    first = held.first[m, 1] & POSITIVE
+    first = flanks.first[m, 1] & POSITIVE
     pressing = _pressing(mesh, values, m, int(np.int64(1)))
-    sums = press_rows(held.rows, first, held.counts[m, 1], values, m, pressing)
+    sums = contact_force(flanks.rows, first, flanks.counts[m, 1], values, m, pressing)
     mesh.pinion.reaction += r_1 * sums.a_1
     mesh.wheel.reaction -= r_2 * sums.a_2
     mesh.pinion.reaction_x -= r_1 * sums.a_1_x
@@ -126,31 +133,31 @@ def _no_contact(mesh: MeshStep) -> None:
 
 
 @inlined
-def look(tables: ContactTables, mesh: MeshStep, m: int, held: HeldRows, again: bool) -> None:
-    """Set reaction and derivatives of mesh ``m`` at its reach and rate, by the rows that are held for it."""
+def look(tables: ContactTables, mesh: MeshStep, m: int, flanks: FlankRows, again: bool) -> None:
+    """Set reaction and derivatives of mesh ``m`` at its reach and rate, by the rows that were looked up for it."""
     values = tables.values
     mesh.teeth = mesh.reach_seen - mesh.given
-    if again or not is_held(mesh, values, m):
+    if again or not within_rows(mesh, values, m):
         find_place(
             tables,
             mesh,
             m,
-            held,
+            flanks,
             mesh.angle + mesh.pinion.turn + mesh.lean,
             mesh.teeth,
         )
-        hold_mesh(tables, mesh, m, held)
-    front, back = held.counts[m, 0] > 0, held.counts[m, 1] > 0
+        look_up_mesh(tables, mesh, m, flanks)
+    front, back = flanks.counts[m, 0] > 0, flanks.counts[m, 1] > 0
     if front or back:
         side = 0 if front else 1
         pressing = _pressing(mesh, values, m, side)
-        first = held.first[m, side] & POSITIVE
-        sums = press_rows(held.rows, first, held.counts[m, side], values, m, pressing)
+        first = flanks.first[m, side] & POSITIVE
+        sums = contact_force(flanks.rows, first, flanks.counts[m, side], values, m, pressing)
         _set_flank(mesh, values, m, pressing.sign, sums)
     else:
         _no_contact(mesh)
     if front and back:
-        _add_back(tables, mesh, m, held)
+        _add_back(tables, mesh, m, flanks)
     body = values[m, V_BODY]
     if body > 0.0:
         share = 1.0 / (1.0 + body * mesh.share)
@@ -236,7 +243,7 @@ def move_others(meshes: Meshes, mesh: MeshStep, give: Array, n_meshes: int, m: i
 def left_open(mesh: MeshStep) -> float:
     """Bring approach of the teeth and recorded forces to the tangent; return the torque that may be off it [N m].
 
-    Infinity where the held rows do not reach, or where a damper lets go of a flank.
+    Infinity where the rows do not reach, or where a damper lets go of a flank.
     """
     dx, dv = mesh.reach - mesh.reach_seen, mesh.rate - mesh.rate_seen
     moved = mesh.off + mesh.share * dx
@@ -254,16 +261,16 @@ def left_open(mesh: MeshStep) -> float:
 
 @inlined
 def flank_powers(
-    tables: ContactTables, mesh: MeshStep, m: int, side: int, held: HeldRows
+    tables: ContactTables, mesh: MeshStep, m: int, side: int, flanks: FlankRows
 ) -> tuple[float, float]:
-    """Return friction and damping power of a flank at the end of the step, whose rows are held."""
+    """Return friction and damping power of a flank at the end of the step, by its rows."""
     pressing = _pressing(mesh, tables.values, m, side)
-    first = held.first[m, side] & POSITIVE
-    sums = press_rows(held.rows, first, held.counts[m, side], tables.values, m, pressing)
+    first = flanks.first[m, side] & POSITIVE
+    sums = contact_force(flanks.rows, first, flanks.counts[m, side], tables.values, m, pressing)
     return powers(sums, tables.values, m, pressing, mesh.pinion.speed, mesh.wheel.speed)
 
 
-# Meshes that move each other within one step of the march: their torques on all tangents together.
+# Meshes that move each other within one step of the time integration: their torques on all tangents together.
 
 TOLERANCE = 1e-6
 """Share of a mesh torque that the iteration may leave open."""

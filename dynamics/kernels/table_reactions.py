@@ -5,6 +5,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, inlined
+from dynamics.kernels.contact_force import (
+    Pressing,
+    Sums,
+    advance_of,
+    contact_force,
+    powers,
+    reversal_per_speed,
+)
 from dynamics.kernels.contact_table import (
     C_PAIRS,
     N_ROW,
@@ -16,9 +24,8 @@ from dynamics.kernels.contact_table import (
     V_TABULATED_BODY,
     ContactTables,
 )
-from dynamics.kernels.hold_path import FlankState, Sliding, hold_path, sliding_at
-from dynamics.kernels.press_rows import Pressing, Sums, advance_of, powers, press_rows, reversal_per_speed
 from dynamics.kernels.reactions import MeshStates
+from dynamics.kernels.table_lookup import FlankState, Sliding, look_up_flank, sliding_at
 
 Array = NDArray[np.float64]
 
@@ -33,8 +40,8 @@ def _press_side(
 ) -> Sums:
     """Hold one flank at its state and sum it there."""
     first = int(np.int64(0))  # for a constant everything would be compiled once more
-    held = hold_path(tables, m, state, sliding, pressing.reach, rows, first)
-    return press_rows(rows, first, held.n, tables.values, m, pressing)
+    rows_of = look_up_flank(tables, m, state, sliding, pressing.reach, rows, first)
+    return contact_force(rows, first, rows_of.n, tables.values, m, pressing)
 
 
 def table_reactions(tables: ContactTables, m: int, states: MeshStates, tilts: Array, out: Array) -> None:

@@ -1,4 +1,4 @@
-"""Tooth forces beside the ports of the meshes in the march: friction and the other flank.
+"""Tooth forces beside the ports of the meshes in the time integration: friction and the other flank.
 
 The ports of a mesh carry the torques of its gears with a lateral force along the normal of the flanks that carry. What
 these torques have beyond the normal force, and what the other flanks press, acts on rows of its own
@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
 from dynamics.kernels.contact_table import V_BACKLASH, V_FRICTION, V_R1, V_R2
+from dynamics.kernels.integrator_state import NEW, OLD, Meshes, torque_at
 from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, STATE_AT
-from dynamics.kernels.mesh_workspace import NEW, OLD, Meshes, torque_at
-from dynamics.kernels.mode_pass import N_BANK, WIDTH, dot_modes, push_modes
+from dynamics.kernels.modal_step import N_BANK, WIDTH, dot_modes, push_modes
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]

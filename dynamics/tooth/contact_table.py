@@ -21,7 +21,7 @@ from scipy.ndimage import spline_filter1d
 from dynamics.errors import DynamicsInputError
 from dynamics.kernels import contact_table as layout
 from dynamics.kernels.contact_table import FRICTION, SUMS, ContactTables, NodeLaw, SliceSprings
-from dynamics.kernels.mesh_workspace import aligned
+from dynamics.kernels.integrator_state import aligned
 from dynamics.tooth.contact_samples import PADDING, RESOLVED, FlankGrid, PathFilter, flank_samples
 from dynamics.tooth.law import MeshLaw, back_deviations, check_mesh_law, law_content
 from dynamics.tooth.packed_laws import has_individual_teeth

@@ -244,14 +244,14 @@ class TimeMarch:
             seen = 0 if self._reader is None else count
             states = np.empty((seen, len(self._carried.state) + 2 * n_meshes + len(self._carried.wrench)))
             self.tables = self._tables.at(self._pinion_speeds())
-            self.unconverged += kernels.march(
+            self.unconverged += kernels.integrate(
                 self.tables,
                 self.propagator.modes,
                 self.propagator.wrench,
                 commands,
                 self._carried,
                 kernels.Steps(self.step, self.substeps),
-                kernels.MarchRecord(histories[-1], all_samples[-1], states),
+                kernels.Histories(histories[-1], all_samples[-1], states),
             )
             if self._reader is not None:
                 torques.append(self._read(self._reader, states, all_samples[-1]))
@@ -273,7 +273,7 @@ class TimeMarch:
         )  # fmt: skip
 
     def _read(self, reader: StateReader, states: Array, samples: Array) -> Array:
-        """Torques (r, n) [N m] at the ends of n samples, see ``kernels.MarchRecord``."""
+        """Torques (r, n) [N m] at the ends of n samples, see ``kernels.Histories``."""
         n_states = len(self._carried.state)
         marched, ports, beside = np.split(states, (n_states, n_states + 2 * len(self.laws)), axis=1)
         slow, _, braking, _ = np.split(

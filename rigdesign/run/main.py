@@ -12,7 +12,7 @@ from types import MappingProxyType
 
 from threadpoolctl import threadpool_limits
 
-from dynamics.kernels.march import compiled
+from dynamics.kernels.time_integration import compiled
 from dynamics.vibration.time_integration import compile_time_integration
 from dynamics.vibration.time_response import TimeResponse
 from rigdesign.base.fidelity import Fidelity

@@ -7,8 +7,8 @@ import pytest
 import scipy.linalg
 from numba import njit
 
+from dynamics.kernels.integrator_state import STEP
 from dynamics.kernels.mesh_solve import left_open
-from dynamics.kernels.mesh_workspace import STEP
 from dynamics.rotor.linear_system import LinearSystem
 from dynamics.vibration.march_inputs import DriveLoads, DriveState, MarchSettings, drag_loads, slow_loads
 from dynamics.vibration.modal_model import modal_model

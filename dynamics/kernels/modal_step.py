@@ -15,7 +15,7 @@ LANES = 8
 """Numbers in a vector."""
 
 
-def _pass_modes(typing: Any, bank: Any, first: Any, groups: Any, torque_a: Any, torque_b: Any) -> Any:
+def _advance_modes(typing: Any, bank: Any, first: Any, groups: Any, torque_a: Any, torque_b: Any) -> Any:
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         array, start, count, t_a, t_b = args
         data = context.make_array(signature.args[0])(context, builder, array).data
@@ -152,9 +152,9 @@ dot_modes: Any = intrinsic(_dot_modes)
 push_modes: Any = intrinsic(_push_modes)
 """push_modes(bank, first, table, at, groups, f_0, f_1, f_2, f_3): add to the state of some groups of the bank what four
 forces push, by ``table`` from ``at`` on: per group the state of all its modes per force."""
-pass_modes: Any = intrinsic(_pass_modes)
-"""pass_modes(bank, first, groups, torque_a, torque_b): take a block of the bank over a step with the torques of its two
-ports at the start of it; return speed and turn of port a, speed and turn of port b that its modes give."""
+advance_modes: Any = intrinsic(_advance_modes)
+"""advance_modes(bank, first, groups, torque_a, torque_b): take a block of the bank over a step with the torques of its
+two ports at the start of it; return speed and turn of port a, speed and turn of port b that its modes give."""
 
 
 # Layout of the modes of a block in the bank, see ``kernels.linear_step``.

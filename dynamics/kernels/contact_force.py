@@ -1,4 +1,4 @@
-"""Forces of a flank that is held on its path, from the rows of ``kernels.hold_path``."""
+"""Contact forces of a flank at its place on the path, from the rows of ``kernels.table_lookup``."""
 
 from typing import NamedTuple
 
@@ -45,7 +45,7 @@ class Pressing(NamedTuple):
     rate: float
     """Rate of the approach of the gears [m/s]."""
     beside: float
-    """Path position less that at which the rows are held, a small part of a cell [m]."""
+    """Path position less that of the rows, a small part of a cell [m]."""
     advance: float
     """By how much sliding reverses further along the path than without vibration [m]."""
     omega_1: float
@@ -106,8 +106,8 @@ def advance_of(values: Array, m: int, omega_1: float, omega_2: float, per_speed:
 
 
 @inlined
-def press_rows(rows: Array, first: int, n: int, values: Array, m: int, pressing: Pressing) -> Sums:
-    """Sum the held rows of a flank at an approach and a rate.
+def contact_force(rows: Array, first: int, n: int, values: Array, m: int, pressing: Pressing) -> Sums:
+    """Sum the rows of a flank at an approach and a rate.
 
     Force of a pair ``N = max(0, F + c h v)``, clipped by its damper alone; a_1 = N + dW/ds and friction, a_2 = N and
     friction.

@@ -1,4 +1,4 @@
-"""March of the modal propagator with the gear meshes as implicit nonlinear torques.
+"""Time integration by the modal propagator with the gear meshes as implicit nonlinear torques.
 
 Arrays come from ``dynamics.vibration.propagator`` (discretised modes) and ``dynamics.tooth.contact_table`` (tables of
 the mesh laws); names, units and validation live above.
@@ -17,7 +17,18 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
 from dynamics.kernels.contact_table import C_PAIRS, N_ROW, SCRATCH, V_R1, V_R2, ContactTables
 from dynamics.kernels.drag import DragWork, brake, drags_on_ports, push_drags
-from dynamics.kernels.held_flanks import HeldRows, find_place, hold_mesh
+from dynamics.kernels.flank_lookup import FlankRows, find_place, look_up_mesh
+from dynamics.kernels.integration_data import Carried, Commands, Histories, Steps, Workspace
+from dynamics.kernels.integrator_state import (
+    MISSING,
+    NEW,
+    OLD,
+    STEP,
+    Meshes,
+    aligned,
+    aligned_zeros,
+    torque_at,
+)
 from dynamics.kernels.linear_step import (
     AT_END,
     DiscreteModes,
@@ -29,7 +40,6 @@ from dynamics.kernels.linear_step import (
     step_modes,
     take_state,
 )
-from dynamics.kernels.march_state import Carried, Commands, MarchRecord, Steps, Workspace
 from dynamics.kernels.mesh_solve import (
     choose_friction,
     correct_alone,
@@ -39,7 +49,6 @@ from dynamics.kernels.mesh_solve import (
     look_ahead,
     meet_others,
 )
-from dynamics.kernels.mesh_workspace import MISSING, NEW, OLD, STEP, Meshes, aligned, aligned_zeros, torque_at
 from dynamics.kernels.wrench import (
     WrenchModes,
     forces_on_ports,
@@ -59,11 +68,11 @@ Integers = NDArray[np.int64]
 MOST_ITERATIONS = 12
 
 
-def march(
+def integrate(
     tables: ContactTables, modes: DiscreteModes, wrench: WrenchModes, commands: Commands, carried: Carried,
-    steps: Steps, record: MarchRecord,
+    steps: Steps, record: Histories,
 ) -> int:  # fmt: skip
-    """March over the samples of ``commands``; return the number of unconverged steps.
+    """Integrate over the samples of ``commands``; return the number of unconverged steps.
 
     Each step: outputs and modal state for the old torques; meshes looked at where these lead; Newton on the new mesh
     torques; drag torques at the new speeds; accounts.
@@ -72,7 +81,7 @@ def march(
     room = N_ROW * np.repeat(tables.counts[:, C_PAIRS], 2)
     work = Workspace(
         record=record,
-        held=HeldRows(
+        flanks=FlankRows(
             rows=aligned_zeros(int(room.sum()) + SCRATCH),
             counts=np.zeros((n_meshes, 2), np.int64),
             first=(np.cumsum(room) - room).reshape(n_meshes, 2),
@@ -93,12 +102,12 @@ def march(
         mean_forces=np.zeros(len(carried.wrench)),
         drags=DragWork(np.zeros(n_drags), np.zeros(n_drags), np.zeros(n_drags), np.zeros(4 * n_meshes)),
     )
-    return int(_march(tables, modes, wrench, commands, carried, work, steps))
+    return int(_integrate(tables, modes, wrench, commands, carried, work, steps))
 
 
 def compiled() -> bool:
-    """Whether the march lies compiled on disk."""
-    return any(Path(_march.stats.cache_path).glob("march._march-*.nbi"))
+    """Whether the time integration lies compiled on disk."""
+    return any(Path(_integrate.stats.cache_path).glob("time_integration._integrate-*.nbi"))
 
 
 @inlined
@@ -144,10 +153,10 @@ def _end(meshes: Meshes, ports: Array) -> None:
 
 
 @inlined
-def _guess(tables: ContactTables, meshes: Meshes, held: HeldRows, by_slow: Array, first: int) -> None:
+def _guess(tables: ContactTables, meshes: Meshes, flanks: FlankRows, by_slow: Array, first: int) -> None:
     """Begin a step: the parabola through the last three torques, speeds and turns with what the slow inputs give.
 
-    The meshes are held where angle and approach go straight on.
+    The meshes are looked up where angle and approach go straight on.
     """
     for m in range(tables.values.shape[0]):
         mesh, given = meshes[m & POSITIVE], (first + 4 * m) & POSITIVE
@@ -160,14 +169,14 @@ def _guess(tables: ContactTables, meshes: Meshes, held: HeldRows, by_slow: Array
         angle = mesh.angle + 2.0 * turned - mesh.pinion.turn_old + mesh.lean
         teeth = 2.0 * mesh.teeth - mesh.teeth_old
         mesh.pinion.turn_old, mesh.teeth_old = turned, mesh.teeth
-        find_place(tables, mesh, m, held, angle, teeth)
+        find_place(tables, mesh, m, flanks, angle, teeth)
         mesh.pinion.speed, mesh.pinion.turn = by_slow[given], by_slow[given + 1]
         mesh.wheel.speed, mesh.wheel.turn = by_slow[given + 2], by_slow[given + 3]
         last = mesh.given
         mesh.given = 2.0 * last - mesh.given_old
         mesh.given_old = last
     for m in range(tables.values.shape[0]):
-        hold_mesh(tables, meshes[m & POSITIVE], m, held)
+        look_up_mesh(tables, meshes[m & POSITIVE], m, flanks)
 
 
 @inlined
@@ -199,7 +208,7 @@ def _keep_forces(forces: Array, torques: Array) -> None:
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
-def _march(
+def _integrate(
     tables: ContactTables,
     modes: DiscreteModes,
     wrench: WrenchModes,
@@ -208,7 +217,7 @@ def _march(
     work: Workspace,
     steps: Steps,
 ) -> int:
-    """Do what ``march`` says. No array is made here, so that none has to be counted in the loop (``_nrt``)."""
+    """Do what ``integrate`` says. No array is made here, so that none has to be counted in the loop (``_nrt``)."""
     step, substeps, history, samples = steps.step, steps.substeps, work.record.history, work.record.samples
     states = work.record.states
     values = tables.values
@@ -249,11 +258,11 @@ def _march(
             rate = (commands.offsets[sample, m] - carried.offset[m]) / (substeps * step)
             mesh = meshes[m & POSITIVE]
             mesh.offset, mesh.offset_rate = carried.offset[m], rate
-            choose_friction(tables, mesh, m, work.held)
+            choose_friction(tables, mesh, m, work.flanks)
         mean_torque = 0.0
         for sub in range(substeps):
             slow_at = sub * n_outputs
-            _guess(tables, meshes, work.held, by_slow, slow_at)
+            _guess(tables, meshes, work.flanks, by_slow, slow_at)
             if n_drags:
                 drags_on_ports(modes.drags, drags, work.drags.outputs, meshes)
             if presses_beside:
@@ -273,7 +282,7 @@ def _march(
                 for m in range(n_meshes):
                     mesh = meshes[m & POSITIVE]
                     look_ahead(mesh, values, m, step)
-                    look(tables, mesh, m, work.held, attempt > 0)
+                    look(tables, mesh, m, work.flanks, attempt > 0)
                 for m in range(n_meshes):
                     mesh = meshes[m & POSITIVE]
                     invert(mesh, give, (4 * m * (n_meshes + 1)) & POSITIVE)
@@ -351,7 +360,7 @@ def _march(
     return unconverged
 
 
-# Work and losses of one step of the march.
+# Work and losses of one step.
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
@@ -372,8 +381,8 @@ def account(
     for m in range(n_meshes):
         lost, damped = 0.0, 0.0
         for side in range(2):
-            if work.held.counts[m, side] > 0:
-                sliding, damping = flank_powers(tables, meshes[m & POSITIVE], m, side, work.held)
+            if work.flanks.counts[m, side] > 0:
+                sliding, damping = flank_powers(tables, meshes[m & POSITIVE], m, side, work.flanks)
                 lost += sliding
                 damped += damping
         if carried.wrench.shape[0]:

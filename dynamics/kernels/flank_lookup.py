@@ -1,4 +1,4 @@
-"""Flanks of a mesh that are held at their place on the path within one step of the march."""
+"""Table look-up of the flanks of a mesh at their place on the path, within one step of the time integration."""
 
 from typing import NamedTuple
 
@@ -41,30 +41,30 @@ from dynamics.kernels.contact_table import (
     V_R1,
     ContactTables,
 )
-from dynamics.kernels.hold_path import (
+from dynamics.kernels.integrator_state import MeshStep
+from dynamics.kernels.table_lookup import (
     FlankState,
-    Held,
+    LookUp,
     Sliding,
     add_lines,
     contract_cell,
     contract_first,
-    hold_path,
+    look_up_flank,
     share_of,
     spline_curves,
     spline_weights,
 )
-from dynamics.kernels.mesh_workspace import MeshStep
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
 NEAR = 0.2
-"""Share of a cell by which the path may be off the place at which rows are held."""
+"""Share of a cell by which the path may be off the place at which rows were looked up."""
 
 
-class HeldRows(NamedTuple):
-    """Rows of the flanks that are held on their path."""
+class FlankRows(NamedTuple):
+    """Rows of the flanks of all meshes at their places on the path."""
 
     rows: Array
     """Flat, per mesh and flank room for all of its pairs, then room that tilt needs."""
@@ -73,11 +73,11 @@ class HeldRows(NamedTuple):
     first: Integers
     """(n_meshes, 2) first entry."""
     levels: Integers
-    """(n_meshes,) level of friction in this sample, see ``hold_path.Sliding``."""
+    """(n_meshes,) level of friction in this sample, see ``table_lookup.Sliding``."""
     cells: Integers
     """(n_meshes, 2) cells of the last rows."""
     sides: Integers
-    """(n_meshes,) flank that is held first: 0 in front, 1 on the back, 2 none."""
+    """(n_meshes,) flank that is looked up first: 0 in front, 1 on the back, 2 none."""
     knots: Integers
     """(n_meshes,) knot of its place on the path."""
 
@@ -96,7 +96,7 @@ def _back_begins(mesh: MeshStep, values: Array, m: int) -> float:
 
 @inlined
 def find_place(
-    tables: ContactTables, mesh: MeshStep, m: int, held: HeldRows, angle: float, teeth: float
+    tables: ContactTables, mesh: MeshStep, m: int, flanks: FlankRows, angle: float, teeth: float
 ) -> None:
     """Find the flank of a mesh that touches at an angle of the pinion and an approach of the teeth, and its place."""
     values = tables.values
@@ -104,32 +104,34 @@ def find_place(
     back = teeth < _back_begins(mesh, values, m)
     side = 0 if front else 1
     mesh.table_angle, mesh.teeth = angle, teeth
-    held.sides[m] = side if front or back else 2
+    flanks.sides[m] = side if front or back else 2
     place = place_of(tables, m, side, angle)
-    held.knots[m], mesh.fraction = place.knot, place.fraction
+    flanks.knots[m], mesh.fraction = place.knot, place.fraction
 
 
 @inlined
-def hold_mesh(tables: ContactTables, mesh: MeshStep, m: int, held: HeldRows) -> None:
-    """Hold the flanks of a mesh that touch at the place that was found."""
+def look_up_mesh(tables: ContactTables, mesh: MeshStep, m: int, flanks: FlankRows) -> None:
+    """Look up the flanks of a mesh that touch at the place that was found."""
     values = tables.values
     least, turning = _front_begins(mesh, values, m), _back_begins(mesh, values, m)
     closer = mesh.other_front * mesh.apart
     back = mesh.other_back * mesh.apart - values[m, V_BACKLASH]
-    side, teeth = held.sides[m], mesh.teeth
-    held.counts[m, 0], held.counts[m, 1] = 0, 0
+    side, teeth = flanks.sides[m], mesh.teeth
+    flanks.counts[m, 0], flanks.counts[m, 1] = 0, 0
     low, high = turning, least
     if side < 2:
-        sliding = Sliding(held.levels[m], mesh.lower, mesh.upper)
-        first = held.first[m, side] & POSITIVE
+        sliding = Sliding(flanks.levels[m], mesh.lower, mesh.upper)
+        first = flanks.first[m, side] & POSITIVE
         reach = teeth + closer if side == 0 else back - teeth
         if tables.counts[m, C_GENERAL] == 0:
-            place = Place(held.knots[m], mesh.fraction)
-            rows = hold_phase(tables, m, side, place, sliding, reach, held.cells, held.rows, first)
+            place = Place(flanks.knots[m], mesh.fraction)
+            rows = look_up_equal_teeth(
+                tables, m, side, place, sliding, reach, flanks.cells, flanks.rows, first
+            )
         else:
             state = FlankState(side, mesh.table_angle, 0.0)
-            rows = hold_path(tables, m, state, sliding, reach, held.rows, first)
-        held.counts[m, side] = rows.n
+            rows = look_up_flank(tables, m, state, sliding, reach, flanks.rows, first)
+        flanks.counts[m, side] = rows.n
         if side == 0:
             low, high = rows.low - closer, rows.high - closer
             low = low if teeth < turning or low > turning else turning
@@ -138,31 +140,31 @@ def hold_mesh(tables: ContactTables, mesh: MeshStep, m: int, held: HeldRows) -> 
             high = high if high < least else least
     mesh.low, mesh.high = low, high
     if side == 0 and teeth < turning:
-        _hold_back(tables, mesh, m, held, teeth)
+        _look_up_back(tables, mesh, m, flanks, teeth)
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
-def _hold_back(tables: ContactTables, mesh: MeshStep, m: int, held: HeldRows, teeth: float) -> None:
-    """Hold the back flank of a mesh whose front flank is held."""
+def _look_up_back(tables: ContactTables, mesh: MeshStep, m: int, flanks: FlankRows, teeth: float) -> None:
+    """Look up the back flank of a mesh whose front flank was."""
     back = mesh.other_back * mesh.apart - tables.values[m, V_BACKLASH]
-    sliding = Sliding(held.levels[m], mesh.lower, mesh.upper)
+    sliding = Sliding(flanks.levels[m], mesh.lower, mesh.upper)
     state = FlankState(1, mesh.table_angle, 0.0)
-    rows = hold_path(tables, m, state, sliding, back - teeth, held.rows, held.first[m, 1] & POSITIVE)
-    held.counts[m, 1] = rows.n
+    rows = look_up_flank(tables, m, state, sliding, back - teeth, flanks.rows, flanks.first[m, 1] & POSITIVE)
+    flanks.counts[m, 1] = rows.n
     # no longer from where the back flank begins to touch on
     mesh.low = max(mesh.low if mesh.low > teeth - 1.0 else -np.inf, back - rows.high)
     mesh.high = min(mesh.high, back - rows.low)
 
 
 @inlined
-def is_held(mesh: MeshStep, values: Array, m: int) -> bool:
-    """Return whether the held rows of a mesh are good at the approach and the angle that it reaches."""
+def within_rows(mesh: MeshStep, values: Array, m: int) -> bool:
+    """Return whether the rows of a mesh are good at the approach and the angle that it reaches."""
     beside = values[m, V_R1] * (mesh.angle + mesh.pinion.turn + mesh.lean - mesh.table_angle)
     near = abs(beside) * values[m, V_PER_KNOT] < NEAR
     return bool(near and mesh.low <= mesh.teeth <= mesh.high)
 
 
-# A flank of a mesh with equal teeth held on its path: what ``kernels.hold_path`` does, for the usual case.
+# A flank of a mesh with equal teeth: what ``kernels.table_lookup`` does, for the usual case.
 #
 # One row, no single teeth, no tilt: everything is known but the cell.
 
@@ -188,10 +190,10 @@ def place_of(tables: ContactTables, m: int, side: int, theta_1: float) -> Place:
 
 
 @inlined
-def hold_phase(
+def look_up_equal_teeth(
     tables: ContactTables, m: int, side: int, place: Place, sliding: Sliding, reach: float, cells: Integers,
     rows: Array, row: int,
-) -> Held:  # fmt: skip
+) -> LookUp:  # fmt: skip
     """Write the row of a flank of a mesh with equal teeth at the approach ``reach``.
 
     ``cells`` (n_meshes, 2) holds the cell of the last row, mostly that of this one: what is read there waits for no
@@ -211,7 +213,7 @@ def hold_phase(
     start, end = gap + tables.depths[depths_at], gap + tables.depths[depths_at + 1]
     if not start <= reach < end:
         if reach <= gap:
-            return Held(0, -np.inf, gap)
+            return LookUp(0, -np.inf, gap)
         finest = min(int((reach - gap) * values[m, V_PER_FINEST]), counts[m, C_FINEST] - 1)
         cell = tables.cell_of[(counts[m, C_CELL_OF_AT] + finest) & POSITIVE]
         cells[m, side] = cell
@@ -238,4 +240,4 @@ def hold_phase(
         contract_first(tables.closing, first, 2 * LINES, own, rows, row + R_CLOSING)
         contract_first(tables.closing, first + LINES, 2 * LINES, own, rows, row + R_CLOSING + LINES)
     rows[row + R_START], rows[row + R_GAP_SLOPE], rows[row + R_GAP_CURVE] = start, slope, curve
-    return Held(1, start, end if cell < counts[m, C_CELLS] - 1 else np.inf)
+    return LookUp(1, start, end if cell < counts[m, C_CELLS] - 1 else np.inf)

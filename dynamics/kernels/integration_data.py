@@ -1,4 +1,4 @@
-"""What a march reads and writes: commands, the state from call to call, scratch arrays."""
+"""What a time integration reads and writes: commands, the state from call to call, scratch arrays."""
 
 from typing import NamedTuple
 
@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.kernels.drag import DragLaws, DragWork
-from dynamics.kernels.held_flanks import HeldRows
-from dynamics.kernels.mesh_workspace import Meshes
+from dynamics.kernels.flank_lookup import FlankRows
+from dynamics.kernels.integrator_state import Meshes
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -18,7 +18,7 @@ N_PORTS = 12
 
 
 class Commands(NamedTuple):
-    """Commands of a march, values at the end of each sample."""
+    """Commands, values at the end of each sample."""
 
     given: Array
     """(n_samples, 4 + n_given) motor torque, twist, speed of the drive, torque of the first mesh, then the other slow
@@ -32,7 +32,7 @@ class Commands(NamedTuple):
 
 
 class Carried(NamedTuple):
-    """State of a march from call to call; every array is written."""
+    """State from call to call; every array is written."""
 
     state: Array
     """(n_states,) modal state."""
@@ -62,7 +62,7 @@ class Carried(NamedTuple):
 
 
 class Steps(NamedTuple):
-    """Steps of a march."""
+    """Steps of a time integration."""
 
     step: float
     """[s]"""
@@ -70,8 +70,8 @@ class Steps(NamedTuple):
     """Steps in a sample."""
 
 
-class MarchRecord(NamedTuple):
-    """What a march writes down."""
+class Histories(NamedTuple):
+    """What a time integration writes down."""
 
     history: Array
     """(n_meshes, 2 or 7, steps): front - back force at full resolution, that of the filtered tables [, approach, pinion
@@ -84,10 +84,10 @@ class MarchRecord(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Scratch arrays of a march."""
+    """Scratch arrays of a time integration."""
 
-    record: MarchRecord
-    held: HeldRows
+    record: Histories
+    flanks: FlankRows
     bank: Array
     """That of the modes with the state in it."""
     slow_outputs: Array

@@ -1,4 +1,4 @@
-"""A flank held at a place on its path: one row of numbers for each tooth pair that touches, from its contact table.
+"""Table look-up of a flank at a place on its path: from its contact table a row of numbers for each pair that touches.
 
 The splines over the path are contracted to cubics over the approach of the teeth, so that a Newton iteration at a
 known angle needs no table.
@@ -74,7 +74,7 @@ Integers = NDArray[np.int64]
 
 
 class FlankState(NamedTuple):
-    """Where a flank is held on its path."""
+    """Where a flank is on its path."""
 
     side: int
     """0 in front, 1 on the back."""
@@ -94,8 +94,8 @@ class Sliding(NamedTuple):
     upper: float
 
 
-class Held(NamedTuple):
-    """Rows of a flank that is held on its path."""
+class LookUp(NamedTuple):
+    """Rows of a flank at a place on its path."""
 
     n: int
     """Rows, one for each pair that touches."""
@@ -317,9 +317,9 @@ def _tilt_row(
 
 
 @njit(cache=True, fastmath=LOOSE, error_model="numpy", _nrt=False)  # type: ignore[call-overload]
-def hold_path(
+def look_up_flank(
     tables: ContactTables, m: int, state: FlankState, sliding: Sliding, reach: float, rows: Array, first: int
-) -> Held:
+) -> LookUp:
     """Write a row for every pair of a flank that touches at the approach ``reach`` into ``rows`` from ``first`` on."""
     values, counts = tables.values, tables.counts
     side = state.side
@@ -386,7 +386,7 @@ def hold_path(
                     rows[row + i] *= scale
             n += 1
         knot += per_pitch
-    return Held(n, low, high)
+    return LookUp(n, low, high)
 
 
 # Contraction of four rows of a table with four weights, and with four more, as vector instructions.
