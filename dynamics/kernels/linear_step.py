@@ -177,21 +177,21 @@ def add_torques(links: Integers, first: int, through: Array, part: int, meshes: 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def _look(further: Integers, block: int, bank: Array, meshes: Meshes) -> None:
     """Add the modes' part of the outputs of further ports."""
-    a, b = further[block, PORT_A], further[block, PORT_B]
-    speed_a, turn_a, speed_b, turn_b = 0.0, 0.0, 0.0, 0.0
+    number_a, number_b = further[block, PORT_A], further[block, PORT_B]
+    mesh_a, mesh_b = meshes[(number_a >> 1) & POSITIVE], meshes[(number_b >> 1) & POSITIVE]
+    a = mesh_a.wheel if number_a & 1 else mesh_a.pinion
+    b = mesh_b.wheel if number_b & 1 else mesh_b.pinion
     for group in range(further[block, GROUPS]):
         home = further[block, HOME_AT] + N_BANK * WIDTH * group
         g = further[block, BANK_AT] + N_BANK * WIDTH * group
         for i in range(WIDTH):
             real, imag = bank[home + i], bank[home + WIDTH + i]
             row_a, row_b = g + 8 * WIDTH + i, g + 12 * WIDTH + i
-            speed_a += bank[row_a] * real + bank[row_a + WIDTH] * imag
-            speed_b += bank[row_b] * real + bank[row_b + WIDTH] * imag
+            a.speed += bank[row_a] * real + bank[row_a + WIDTH] * imag
+            b.speed += bank[row_b] * real + bank[row_b + WIDTH] * imag
             row_a, row_b = row_a + 2 * WIDTH, row_b + 2 * WIDTH
-            turn_a += bank[row_a] * real + bank[row_a + WIDTH] * imag
-            turn_b += bank[row_b] * real + bank[row_b + WIDTH] * imag
-    move_port(meshes, a, speed_a, turn_a)
-    move_port(meshes, b, speed_b, turn_b)
+            a.turn += bank[row_a] * real + bank[row_a + WIDTH] * imag
+            b.turn += bank[row_b] * real + bank[row_b + WIDTH] * imag
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
