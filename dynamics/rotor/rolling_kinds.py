@@ -24,9 +24,8 @@ from functools import cached_property
 from itertools import pairwise
 from typing import ClassVar, TypeVar
 
-from scipy.optimize import brentq
-
 from dynamics.rotor.bearing import BearingError
+from dynamics.rotor.rolling_elements import RollingElements, ball_diameter, rollers
 from dynamics.rotor.rolling_friction import (
     RPM,
     FrictionConditions,
@@ -34,8 +33,7 @@ from dynamics.rotor.rolling_friction import (
     FrictionTorque,
     four_sources,
 )
-from dynamics.rotor.rolling_row import RollingElements
-from dynamics.standards import iso76_2006, iso281_2007, iso5753_1_2009
+from dynamics.standards import iso281_2007, iso5753_1_2009
 from dynamics.standards import iso_tr_14179_2_2001 as palmgren
 from dynamics.standards import skf_friction_2006 as skf
 
@@ -44,8 +42,6 @@ FILLING_ANGLE = math.radians(198.0)
 numbers of the series 62 and 63."""
 BALL_FILL = 0.9
 """Share of the pitch circle filled with balls of an angular contact bearing; assumed."""
-ROLLER_FILL = 0.82
-"""Share of the pitch circle filled with rollers of a bearing with cage; assumed."""
 TAPERED_ROLLER_SHARE = 0.24
 """Mean roller diameter over D - d of a tapered roller bearing; assumed."""
 MOST_BALLS = 40
@@ -351,7 +347,7 @@ class DeepGrooveBall(TwoLawKind):
         pitch = bearing.mean_diameter
         best = None
         for count in range(5, MOST_BALLS):
-            diameter = _ball_diameter(count, pitch, bearing.static_rating, 0.0, bearing.f_0)
+            diameter = ball_diameter(count, pitch, bearing.static_rating, 0.0, bearing.f_0)
             if diameter is None:
                 continue
             arc = 2.0 * (count - 1) * math.asin(diameter / pitch)
@@ -425,7 +421,7 @@ class CylindricalRoller(TwoLawKind):
     def elements(self, bearing: CatalogueBearing) -> RollingElements:
         """Rollers from the printed raceway diameters F, E."""
         inner, outer = bearing.inner_raceway, bearing.outer_raceway
-        return _rollers(
+        return rollers(
             0.5 * (inner + outer), 0.5 * (outer - inner), bearing.static_rating, 0.0,
             "raceways, C_0 by ISO 76 and 82 % of the pitch circle filled (assumed)",
         )  # fmt: skip
@@ -476,7 +472,7 @@ class TaperedRoller(TwoLawKind):
 
     def elements(self, bearing: CatalogueBearing) -> RollingElements:
         """Rollers from the main dimensions and the contact angle."""
-        return _rollers(
+        return rollers(
             0.5 * (bearing.bore + bearing.outside_diameter),
             TAPERED_ROLLER_SHARE * (bearing.outside_diameter - bearing.bore),
             bearing.static_rating,
@@ -529,7 +525,7 @@ class AngularContactBall(TwoLawKind):
         pitch, angle = bearing.mean_diameter, bearing.contact_angle
         best = None
         for count in range(5, MOST_BALLS):
-            diameter = _ball_diameter(count, pitch, bearing.static_rating, angle, None)
+            diameter = ball_diameter(count, pitch, bearing.static_rating, angle, None)
             if diameter is not None and count * diameter <= BALL_FILL * math.pi * pitch:
                 best = (count, diameter)
         source = "C_0 by ISO 76 and nine tenths of the pitch circle filled (assumed)"
@@ -601,7 +597,7 @@ class NeedleRoller(RollingKind):
         diameter = known if outer else self.needle_share * (bearing.outside_diameter - bearing.bore)
         size = "raceways" if outer else "raceway F, needle diameter 0.2 (D - d) (assumed)"
         source = f"{size}, C_0 by ISO 76 and 82 % of the pitch circle filled (assumed)"
-        return _rollers(inner + diameter, diameter, bearing.static_rating, 0.0, source)
+        return rollers(inner + diameter, diameter, bearing.static_rating, 0.0, source)
 
     def equivalent_load(self, bearing: CatalogueBearing, radial: float, axial: float) -> float:
         """F_r."""
@@ -631,22 +627,6 @@ class NeedleRoller(RollingKind):
         return FrictionTorque(rolling=0.5 * self.mu * given.radial * bearing.bore)
 
 
-def _ball_diameter(
-    count: int, pitch: float, static_rating: float, angle: float, f_0: float | None
-) -> float | None:
-    """Diameter [m] at which ``count`` balls have the static rating; None where there is none."""
-
-    def excess(diameter: float) -> float:
-        factor = iso76_2006.f_0(diameter * math.cos(angle) / pitch) if f_0 is None else f_0
-        return iso76_2006.C_0r_ball(count, diameter * 1e3, angle, factor) - static_rating
-
-    smallest, largest = 1e-3 * pitch, 0.39 * pitch
-    if excess(smallest) > 0.0 or excess(largest) < 0.0:
-        return None
-    root: float = brentq(excess, smallest, largest, xtol=1e-9)
-    return root
-
-
 def _balls(
     bearing: CatalogueBearing, best: tuple[int, float] | None, angle: float, source: str
 ) -> RollingElements:
@@ -662,21 +642,5 @@ def _balls(
         diameter=diameter,
         pitch_diameter=bearing.mean_diameter,
         contact_angle=angle,
-        source=source,
-    )
-
-
-def _rollers(
-    pitch: float, diameter: float, static_rating: float, angle: float, source: str
-) -> RollingElements:
-    """Rollers of a diameter [m] that fill `ROLLER_FILL` of the pitch circle [m], as long as C_0 [N] makes them."""
-    count = int(ROLLER_FILL * math.pi * pitch / diameter)
-    per_length = iso76_2006.C_0r_roller(count, diameter * 1e3, 1.0, pitch * 1e3, angle)
-    return RollingElements(
-        count=count,
-        diameter=diameter,
-        pitch_diameter=pitch,
-        contact_angle=angle,
-        length=1e-3 * static_rating / per_length,
         source=source,
     )

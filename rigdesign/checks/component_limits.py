@@ -18,13 +18,13 @@ from rigdesign.checks.omissions import Omissions, constant_drag, warming
 from rigdesign.checks.registry import REGISTRY, SPEEDS, RuleFamily, Topic
 from rigdesign.checks.rules import Omission, Rule, hold, not_applicable, not_evaluated, worst
 from rigdesign.results.check import NO_HOUSING, NO_LOADS, Check
-from rigdesign.results.loads import StageBracing
 from rigdesign.results.units import NUMBER
 from rigdesign.rig.shaft_seals import shaft_seals
 
 if TYPE_CHECKING:
     from rigdesign.postprocessing.run_torques import PartTorque
     from rigdesign.postprocessing.solved_rig import SolvedRig
+    from rigdesign.results.loads import StageBracing
 
 Found = tuple[float | None, str]
 """A result [SI] and where it occurs; None with the reason where there is none."""

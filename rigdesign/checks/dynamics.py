@@ -16,12 +16,12 @@ from rigdesign.checks.places import meshes
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic, Values
 from rigdesign.checks.rules import Omission, worst
 from rigdesign.results.check import Check
-from rigdesign.results.loads import MeshLoads, ModeCrossing, StageLoad
 from rigdesign.results.units import NUMBER, RPM
 from rigdesign.results.vibration import NEAR
 
 if TYPE_CHECKING:
     from rigdesign.postprocessing.solved_rig import SolvedRig
+    from rigdesign.results.loads import MeshLoads, ModeCrossing, StageLoad
 
 GROUP = "dynamics"
 NOT_LOADED = "no stage turns under more than the start torque"

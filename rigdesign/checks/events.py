@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from rigdesign.case.events import EmergencyStop, EventLoadLimits, Overspeed, ToothLoss
 from rigdesign.case.model import Case
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
-from rigdesign.results.check import Check
-from rigdesign.results.loads import NOT_WITHIN, EventRecord, Load
+from rigdesign.results.check import NOT_WITHIN, Check
 from rigdesign.results.units import NEWTON_METRE, NUMBER, RPM, DisplayUnit
 
 if TYPE_CHECKING:
     from rigdesign.postprocessing.solved_rig import SolvedRig
+    from rigdesign.results.loads import EventRecord, Load
 
 GROUP = "events"
 NEWTON, SECOND = DisplayUnit("N"), DisplayUnit("s")

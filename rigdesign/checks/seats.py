@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 from rigdesign.checks.omissions import long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RigRule, Topic, Values
-from rigdesign.results.check import Check
-from rigdesign.results.loads import SEAT_FRICTION, SplineStressKind
+from rigdesign.results.check import SEAT_FRICTION, Check
 from rigdesign.results.units import MEGAPASCAL, NUMBER
 
 if TYPE_CHECKING:
     from rigdesign.postprocessing.solved_rig import SolvedRig
+    from rigdesign.results.loads import SplineStressKind
 
 
 def _slip(solved: SolvedRig) -> Values:

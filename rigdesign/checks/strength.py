@@ -18,11 +18,11 @@ from rigdesign.checks.places import rig_gears, specimen_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, SPEEDS, RuleFamily, Topic
 from rigdesign.checks.rules import Rule, hold, not_applicable, not_evaluated, worst
 from rigdesign.results.check import NO_LIMIT, NO_LOADS, Check
-from rigdesign.results.loads import FROM_INFLUENCE, RootStressPath
 from rigdesign.results.units import HOUR, MEGAPASCAL, MPA, NUMBER, RPM
 
 if TYPE_CHECKING:
     from rigdesign.postprocessing.solved_rig import SolvedRig
+    from rigdesign.results.loads import RootStressPath
 
 
 @dataclass(frozen=True)
@@ -173,13 +173,13 @@ def _path(solved: SolvedRig, mesh: int, index: int) -> RootStressPath:
 
 def _by_hand(solved: SolvedRig, mesh: int, method: StressMethod) -> bool:
     """Whether a method stands beside the one that governs."""
-    return method is ISO and solved.loads is not None and _path(solved, mesh, 0).source == FROM_INFLUENCE
+    return method is ISO and solved.loads is not None and _path(solved, mesh, 0).by_influence
 
 
 def _beside(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> str:
     """Which of both stresses governs and why, in words."""
     path = _path(solved, mesh, index)
-    if path.source != FROM_INFLUENCE:
+    if not path.by_influence:
         return ""
     field, nominal = _stress(solved, mesh, index, PATH)[0], worst(_iso_stresses(solved, mesh, index))[0]
     if method is ISO:

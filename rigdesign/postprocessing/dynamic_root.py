@@ -27,8 +27,13 @@ from rigdesign.postprocessing import root
 from rigdesign.postprocessing.curves import state_at
 from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.loaded_contact import ROOT
-from rigdesign.results.loads import FROM_INFLUENCE, StressSource
-from rigdesign.results.teeth import DynamicRootCurve, DynamicRootRecord, MissingRootSpeed
+from rigdesign.results.teeth import (
+    FROM_INFLUENCE,
+    DynamicRootCurve,
+    DynamicRootRecord,
+    MissingRootSpeed,
+    StressSource,
+)
 from rigdesign.rig.model import Rig
 from rigdesign.rig.strain_gauges import RootGauge
 from rigdesign.strain_gauge.measuring_point import grid_weights

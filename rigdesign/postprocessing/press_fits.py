@@ -21,7 +21,8 @@ from rigdesign.postprocessing.tooth_history import (
     shaft_bore,
     shaft_material,
 )
-from rigdesign.results.loads import SEAT_FRICTION, PressFitCapacity, SplineStress, SplineStressKind
+from rigdesign.results.check import SEAT_FRICTION
+from rigdesign.results.loads import PressFitCapacity, SplineStress, SplineStressKind
 from rigdesign.results.units import ZERO
 from rigdesign.rig.model import Rig
 

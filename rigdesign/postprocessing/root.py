@@ -20,7 +20,8 @@ from dynamics.tooth.root_field import PairForces, RootField, Side, root_field
 from dynamics.vibration.response_curve import CurvePoint
 from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.postprocessing.loaded_contact import ROOT
-from rigdesign.results.loads import FROM_FACTORS, FROM_INFLUENCE, RootStressPath, StressSource
+from rigdesign.results.loads import RootStressPath
+from rigdesign.results.teeth import FROM_FACTORS, FROM_INFLUENCE, StressSource
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]

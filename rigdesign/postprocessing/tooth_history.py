@@ -34,8 +34,7 @@ from rigdesign.coupling.mesh_models import MeshModel
 from rigdesign.postprocessing import root
 from rigdesign.postprocessing.gear_loads import application_factor
 from rigdesign.properties.materials import Material
-from rigdesign.results.loads import FROM_FACTORS, FROM_INFLUENCE
-from rigdesign.results.teeth import ToothHistory
+from rigdesign.results.teeth import FROM_FACTORS, FROM_INFLUENCE, ToothHistory
 from rigdesign.rig.model import Rig
 
 FIRST_MESH = 0.5 * math.pi

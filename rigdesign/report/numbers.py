@@ -5,8 +5,7 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from rigdesign.results.check import Check
-from rigdesign.results.loads import NOT_WITHIN
+from rigdesign.results.check import NOT_WITHIN, Check
 
 if TYPE_CHECKING:
     from rigdesign.studies.difference import CheckChange

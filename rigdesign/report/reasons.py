@@ -18,9 +18,9 @@ from rigdesign.report.numbers import (
 from rigdesign.report.views import applicable, sorted_checks
 from rigdesign.results.check import Check
 from rigdesign.results.dynamics import GearboxDynamics
-from rigdesign.results.loads import FROM_INFLUENCE
 from rigdesign.results.ranges import CheckRange, RangedInput, RangeMargin, RangesResult
 from rigdesign.results.result import Flip, RunResult
+from rigdesign.results.teeth import FROM_INFLUENCE
 
 AGREEMENT = 1.15
 """Ratio of two root stresses up to which the methods agree."""

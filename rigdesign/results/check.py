@@ -19,6 +19,10 @@ NO_LOADS = "losses are given (losses.basis = input): there are no dynamic loads"
 NO_LIMIT = "the case states no limit"
 NO_HOUSING = "no gearbox has a housing: there are no temperatures and clearances"
 """Why a check has no value."""
+NOT_WITHIN = "not within"
+"""How the reason of a check begins whose value is the time followed without the event it waits for: a lower bound."""
+SEAT_FRICTION = 0.12
+"""Coefficient of a steel seat against slip along the circumference, joined with oil (DIN 7190-1, table of values)."""
 
 
 @dataclass(frozen=True, kw_only=True)

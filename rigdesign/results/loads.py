@@ -1,12 +1,12 @@
 """Dynamic loads of the meshes: SI records. Speeds are those of a mesh's own pinion, torques positive on the flank that
 carries."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, Literal, Protocol
+from typing import Annotated, Literal, Protocol
 
+from dynamics.rotor.bracing import BracingDrift
+from dynamics.rotor.torsional_modes import DampingRecord, LoopMode
 from rigdesign.results.check import Role
 from rigdesign.results.quantity import (
     Degrees,
@@ -19,17 +19,7 @@ from rigdesign.results.quantity import (
     Seconds,
     Watts,
 )
-
-if TYPE_CHECKING:
-    from dynamics.rotor.bracing import BracingDrift
-    from dynamics.rotor.torsional_modes import DampingRecord, LoopMode
-    from rigdesign.results.teeth import ToothHistory
-
-
-StressSource = Literal["finite-element influence numbers", "ISO 6336-3 form and stress correction factors"]
-FROM_INFLUENCE: StressSource = "finite-element influence numbers"
-FROM_FACTORS: StressSource = "ISO 6336-3 form and stress correction factors"
-"""Where the root stress per tooth force comes from."""
+from rigdesign.results.teeth import FROM_FACTORS, FROM_INFLUENCE, StressSource, ToothHistory
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,6 +175,11 @@ class RootStressPath:
     source: StressSource = FROM_FACTORS
     """Of the stress per tooth force."""
 
+    @property
+    def by_influence(self) -> bool:
+        """Whether the stress per tooth force is that of finite elements."""
+        return self.source == FROM_INFLUENCE
+
 
 @dataclass(frozen=True, kw_only=True)
 class RootStressRatio:
@@ -272,10 +267,6 @@ class DynamicLoads(Protocol):
 SplineStressKind = Literal["flank pressure", "shear of the teeth", "shear of the shaft", "tension of the hub"]
 
 
-SEAT_FRICTION = 0.12
-"""Coefficient of a steel seat against slip along the circumference, joined with oil (DIN 7190-1, table of values)."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class PressFitCapacity:
     """A gear on its shaft at the largest torque of a stage or event."""
@@ -327,8 +318,6 @@ class SplineStress:
 # Loads of the rig in an event: SI records.
 
 Load = Literal["coupling torque", "shaft torque", "seat torque", "mesh torque", "bearing force"]
-NOT_WITHIN = "not within"
-"""How the reason of a check begins whose value is the time followed without the event it waits for: a lower bound."""
 
 
 LEAST_SHARE = 0.05

@@ -96,16 +96,12 @@ Watts = Annotated[float, Quantity("W")]
 
 @cache
 def _solver_records() -> Mapping[str, type]:
-    """What records of the solvers are called where results annotate them: loaded when the first one is shown."""
-    from dynamics.rotor.bracing import BracingDrift
+    """What records of the solvers are called where results name them in annotations alone: loaded at the first one."""
     from dynamics.rotor.damped_modes import RigMode
-    from dynamics.rotor.torsional_modes import DampingRecord, LoopMode
-    from rigdesign.results.teeth import ToothHistory
     from rigdesign.transient.soak import Soak
     from thermal.fe.mesh import NamedMesh
 
-    records = (BracingDrift, DampingRecord, LoopMode, NamedMesh, RigMode, Soak, ToothHistory)
-    return {record.__name__: record for record in records}
+    return {record.__name__: record for record in (NamedMesh, RigMode, Soak)}
 
 
 _OF_SOLVERS: Mapping[str, Mapping[str, Quantity]] = {"RigMode": {"frequency": Quantity("Hz")}}

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +15,15 @@ from dynamics.rating.scuffing import ContactTemperature
 from dynamics.tooth.mesh_cycle import MeshCycle
 from dynamics.tooth.points import face_sense
 from dynamics.tooth.root_field import Fillet, RootCourse, ToothTurn
-from rigdesign.results.loads import StressSource
 from rigdesign.results.quantity import Quantity
 from rigdesign.strain_gauge.measuring_point import GaugeCurve, MeasuringPoint
 
 Array = NDArray[np.float64]
 Row = tuple[float, ...]
+StressSource = Literal["finite-element influence numbers", "ISO 6336-3 form and stress correction factors"]
+FROM_INFLUENCE: StressSource = "finite-element influence numbers"
+FROM_FACTORS: StressSource = "ISO 6336-3 form and stress correction factors"
+"""Where the root stress per tooth force comes from."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -10,8 +10,8 @@ import pytest
 from dynamics.rotor import rolling_catalogue
 from dynamics.rotor.bearing import BearingError
 from dynamics.rotor.rolling_catalogue import catalogue_bearing, tabled_designations
+from dynamics.rotor.rolling_elements import RollingElements
 from dynamics.rotor.rolling_kinds import ROLLING_KINDS, CatalogueBearing, TwoLawKind
-from dynamics.rotor.rolling_row import RollingElements
 from dynamics.standards import iso76_2006, skf_friction_2006
 
 

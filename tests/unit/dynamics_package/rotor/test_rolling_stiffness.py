@@ -9,13 +9,8 @@ from scipy.optimize import brentq, minimize
 
 from dynamics.rotor.bearing import BearingError
 from dynamics.rotor.rolling_catalogue import catalogue_bearing, tabled_designations
-from dynamics.rotor.rolling_row import (
-    BallGroove,
-    RollingElements,
-    RowOfElements,
-    contact_law,
-    ellipse_ratio,
-)
+from dynamics.rotor.rolling_elements import RollingElements
+from dynamics.rotor.rolling_row import BallGroove, RowOfElements, contact_law, ellipse_ratio
 from dynamics.rotor.rolling_stiffness import (
     bearing_stiffness,
 )

@@ -16,9 +16,8 @@ from rigdesign.postprocessing.gear_loads import COMPUTED, STATED, rated_loads
 from rigdesign.postprocessing.loaded_contact import held_contact, loaded_contact
 from rigdesign.postprocessing.tooth_history import tooth_histories
 from rigdesign.report.figures.teeth import tooth_contact_figure
-from rigdesign.results.loads import FROM_FACTORS, FROM_INFLUENCE
 from rigdesign.results.serialisation.teeth import loaded_contact_row
-from rigdesign.results.teeth import LoadedContact
+from rigdesign.results.teeth import FROM_FACTORS, FROM_INFLUENCE, LoadedContact
 from rigdesign.rig import tooth_influence
 from rigdesign.rig.model import Rig
 from rigdesign.rig.tooth_influence import InfluenceStore

@@ -17,8 +17,7 @@ from rigdesign.checks import strength
 from rigdesign.postprocessing.curves import iso_factor
 from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.postprocessing.tooth_history import GearInMesh, mean_stress, sensitivity
-from rigdesign.results.loads import FROM_FACTORS, StressSource
-from rigdesign.results.teeth import ToothHistory
+from rigdesign.results.teeth import FROM_FACTORS, StressSource, ToothHistory
 from rigdesign.rig.model import Rig
 from tests.builders.loads import StatedLoads, mesh_loads
 from tests.builders.paths import CASES
