@@ -18,9 +18,9 @@ from rigdesign.diagnosis.rig_calibration.document import load_rig_calibration
 from rigdesign.diagnosis.run import diagnose_measurement
 from rigdesign.measurement.comparison.compare import Comparison, compare_measurement
 from rigdesign.prediction.predict import Thermal
-from rigdesign.report import write_results
 from rigdesign.report.pages.study import write_study
 from rigdesign.report.study_tables import TableFormat, require_table_libraries, write_tables
+from rigdesign.report.writing import write_results
 from rigdesign.results.result import RunResult
 from rigdesign.run import main
 from rigdesign.studies.assumed_ranges import with_ranges

@@ -71,7 +71,7 @@ def failure_kept(out: Path | None) -> Iterator[None]:
     try:
         yield
     except NotConvergedError as error:
-        from rigdesign.report import write_failure
+        from rigdesign.report.results_json import write_failure
 
         file = None if out is None else write_failure(error, out)
         if file is not None:

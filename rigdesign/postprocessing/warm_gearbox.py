@@ -15,6 +15,7 @@ from rigdesign.coupling.alignment import (
 from rigdesign.coupling.expansion import axes_of, bearing_expansion
 from rigdesign.coupling.loop import PointResult
 from rigdesign.results.lateral import RollingBearingRecord
+from rigdesign.results.units import HOUR
 from rigdesign.results.warm_gearbox import (
     AxisAlignment,
     BearingClearance,
@@ -204,8 +205,8 @@ def rolling_bearings(rig: Rig, points: Iterable[PointResult]) -> Iterator[Rollin
                 heat_to_shaft=state.heat_to_shaft,
                 heat_to_housing=state.heat_to_housing,
                 operating_clearance=point.last.coupling_state.bearing_clearance[name],
-                basic_life=_finite(life.basic_life),
-                modified_life=_finite(life.modified_life),
+                basic_life=_finite(HOUR * life.basic_life),
+                modified_life=_finite(HOUR * life.modified_life),
                 static_safety=_finite(life.static_safety),
                 viscosity_ratio=life.viscosity_ratio,
                 speed_utilisation=state.speed_utilisation,

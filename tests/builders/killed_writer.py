@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 from rigdesign.base.errors import OutputError
-from rigdesign.report import write_results
+from rigdesign.report.writing import write_results
 from tests.builders.report import small_result
 
 EVENTS = ("open", "os.mkdir", "os.rename", "os.remove")

@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from rigdesign.report import write_results
+from rigdesign.report.writing import write_results
 from tests.builders.paths import ROOT
 from tests.builders.report import small_result
 

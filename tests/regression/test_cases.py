@@ -21,8 +21,8 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.cli.terminal.checks import print_checks
-from rigdesign.report import results_document
 from rigdesign.report.pages.report import report_html
+from rigdesign.report.results_json import results_document
 from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 from rigdesign.rig.model import build_rig

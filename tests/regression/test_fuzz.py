@@ -19,7 +19,7 @@ import pytest
 
 from rigdesign.base.errors import RigdesignError
 from rigdesign.case import load_case
-from rigdesign.report import write_results
+from rigdesign.report.writing import write_results
 from rigdesign.results.check import status
 from rigdesign.run.main import run_case
 from tests.builders.fuzz import broken_texts, shortened

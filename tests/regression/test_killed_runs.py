@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from rigdesign.base.errors import OutputError
-from rigdesign.report import write_results
+from rigdesign.report.writing import write_results
 from tests.builders.commands import SMALL
 from tests.builders.output import attempts, held_against, published
 from tests.builders.paths import ROOT

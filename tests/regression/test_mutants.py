@@ -19,7 +19,7 @@ import pytest
 
 from rigdesign.base.errors import CaseError, NotConvergedError, RigdesignError
 from rigdesign.case import Case, load_case
-from rigdesign.report import results_document
+from rigdesign.report.results_json import results_document
 from rigdesign.run.main import run_case
 from tests.builders.mutant import mutations
 from tests.builders.paths import CASES

@@ -13,7 +13,7 @@ from rigdesign.base.worker_pool import ProcessWorkers
 from rigdesign.case.loader import load_case
 from rigdesign.case.model import Case
 from rigdesign.case.usual import stated_numbers
-from rigdesign.report import results_document
+from rigdesign.report.results_json import results_document
 from rigdesign.results.check import Check
 from tests.builders.paths import CASES
 from tests.builders.recorded_reads import recorded_run

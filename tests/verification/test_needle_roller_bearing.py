@@ -16,6 +16,7 @@ from dynamics.rotor.rolling_stiffness import bearing_stiffness
 from dynamics.standards import iso76_2006
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
+from rigdesign.results.units import HOUR
 from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
 
@@ -130,12 +131,12 @@ def test_a_case_that_lets_it_guide_its_shaft_is_refused(tmp_path: Path) -> None:
 @pytest.mark.whole_run
 def test_the_loop_is_checked_with_it(tmp_path: Path) -> None:
     result = run_case(load_case(loop(tmp_path)), fidelity="quick")
-    (row,) = (row for row in result.rolling_bearings if row["stage"] == "test")
-    assert row["bearing"] == "test.pinion_front" and row["axial_load_N"] == 0.0
-    assert row["rolling_torque_Nm"] == pytest.approx(0.5 * 0.0020 * row["radial_load_N"] * 0.040)
-    assert row["sliding_torque_Nm"] == row["drag_torque_Nm"] == 0.0
+    (row,) = (row for row in result.rolling_bearings if row.stage == "test")
+    assert row.bearing == "test.pinion_front" and row.axial_load == 0.0
+    assert row.rolling_torque == pytest.approx(0.5 * 0.0020 * row.radial_load * 0.040)
+    assert row.sliding_torque == row.drag_torque == 0.0
     checks = {check.id: check for check in result.checks}
     assert checks["bearing.rating_life"].value == pytest.approx(
-        min(r["modified_life_h"] for r in result.rolling_bearings)
+        min(row.modified_life for row in result.rolling_bearings) / HOUR
     )
-    assert checks["bearing.static_safety"].value == pytest.approx(71e3 / row["radial_load_N"], rel=0.2)
+    assert checks["bearing.static_safety"].value == pytest.approx(71e3 / row.radial_load, rel=0.2)

@@ -61,10 +61,13 @@ def check(
             "--all prints every check and --quiet nothing but the verdict; leave one of them out"
         )
     loaded = loaded_case(case)
+    from rigdesign.base.output_folder import prepare_output
     from rigdesign.cli.terminal.checks import print_checks
     from rigdesign.cli.terminal.console import print_run
     from rigdesign.cli.terminal.progress import Progress, step_times
-    from rigdesign.report import Issue, prepare_output, results_document, write_results
+    from rigdesign.report.input_sheets import Issue
+    from rigdesign.report.results_json import results_document
+    from rigdesign.report.writing import write_results
     from rigdesign.run.main import run_case
     from rigdesign.studies.result import CheckSelection
     from rigdesign.studies.verdict_sensitivity import with_flips
@@ -143,8 +146,9 @@ def report(
         Print every check and every note, not only what decides.
     """
     from rigdesign.cli.terminal.checks import print_checks
-    from rigdesign.report import Issue, write_report
+    from rigdesign.report.input_sheets import Issue
     from rigdesign.report.results_json import read_result
+    from rigdesign.report.writing import write_report
 
     if not (html or pdf) and (out is not None or author is not None):
         option = "--out" if out is not None else "--author"

@@ -39,10 +39,10 @@ def compare(
         Print compare.json on stdout; everything else goes to stderr.
     """
     loaded = loaded_case(case)
+    from rigdesign.base.output_folder import prepare_output
     from rigdesign.cli.terminal.console import print_comparison
     from rigdesign.cli.terminal.progress import Progress
     from rigdesign.measurement.comparison.compare import compare_measurement, comparison_document
-    from rigdesign.report import prepare_output
     from rigdesign.report.pages.measurement import write_comparison
 
     if out is not None:

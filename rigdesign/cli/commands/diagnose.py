@@ -51,6 +51,7 @@ def diagnose(
             "--calibration FILE uses the calibration of a rig"
         )
     loaded = loaded_case(case)
+    from rigdesign.base.output_folder import prepare_output
     from rigdesign.cli.terminal.diagnosis import print_diagnosis
     from rigdesign.cli.terminal.progress import Progress
     from rigdesign.diagnosis.catalogue import effects_of
@@ -59,7 +60,6 @@ def diagnose(
     from rigdesign.diagnosis.document.outcome import check_pick, outcome
     from rigdesign.diagnosis.rig_calibration.document import load_rig_calibration
     from rigdesign.diagnosis.run import diagnose_measurement
-    from rigdesign.report import prepare_output
     from rigdesign.report.diagnosis_files import write_diagnosis
 
     if name is not None:
@@ -114,11 +114,11 @@ def calibrate(
     loaded = loaded_case(case)
     if constants:
         return _constants(loaded, healthy_set, out, json=json)
+    from rigdesign.base.output_folder import prepare_output
     from rigdesign.cli.terminal.diagnosis import print_rig_calibration
     from rigdesign.cli.terminal.progress import Progress
     from rigdesign.diagnosis.rig_calibration.document import calibration_document
     from rigdesign.diagnosis.rig_calibration.healthy_sets import calibrate_rig
-    from rigdesign.report import prepare_output
     from rigdesign.report.diagnosis_files import write_rig_calibration
 
     prepare_output(out)
@@ -142,10 +142,10 @@ def _constants(case: "Case", healthy_set: tuple[Path, ...], out: Path, *, json: 
         raise UsageError(
             "--json: --constants prints no document; leave one of them out, constants.json holds the fit"
         )
+    from rigdesign.base.output_folder import prepare_output
     from rigdesign.cli.terminal.diagnosis import print_constants
     from rigdesign.cli.terminal.progress import Progress
     from rigdesign.diagnosis.run import calibrate_case
-    from rigdesign.report import prepare_output
     from rigdesign.report.diagnosis_files import write_constants
 
     prepare_output(out)

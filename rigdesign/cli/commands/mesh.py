@@ -21,10 +21,10 @@ def mesh(case: Path, /, *, out: OutFolder, fidelity: Fidelity = "standard") -> i
         Size of the meshes: quick, standard or reference.
     """
     loaded = loaded_case(case)
+    from rigdesign.base.output_folder import prepare_output
     from rigdesign.cli.mesh_export import export_meshes
     from rigdesign.cli.terminal.console import print_meshes
     from rigdesign.cli.terminal.progress import Progress
-    from rigdesign.report import prepare_output
 
     prepare_output(out)
     with Progress() as progress, interrupted(NOTHING_KEPT):

@@ -21,7 +21,7 @@ def validate(*, out: OptionalOutFolder = None, json: bool = False) -> int:
 
     rows = published_rows()
     if out is not None:
-        from rigdesign.report import prepare_output
+        from rigdesign.base.output_folder import prepare_output
         from rigdesign.report.pages.validation import write_validation
 
         prepare_output(out)

@@ -10,6 +10,7 @@ import pytest
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case, load_case
 from rigdesign.case.paths import known_paths, slot_at
+from rigdesign.case.provenance import MeasuredInput
 from tests.builders.paths import CASES
 
 PROTOTYPE = CASES / "uhcf_prototype"
@@ -84,11 +85,9 @@ def test_measured_value_is_listed_as_override(variant: Variant) -> None:
     )
     assert case.gearboxes["test"].oil.outlet_temperature == pytest.approx(424.15)
     assert case.overrides == (
-        {
-            "path": "gearboxes.test.oil.outlet_temperature",
-            "value": "151 degC",
-            "measured": "thermocouple 7",
-        },
+        MeasuredInput(
+            path="gearboxes.test.oil.outlet_temperature", value="151 degC", measured="thermocouple 7"
+        ),
     )
 
 

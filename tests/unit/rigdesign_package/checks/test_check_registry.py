@@ -12,7 +12,7 @@ from rigdesign.checks.assumptions import depends
 from rigdesign.checks.registry import LOADS, REGISTRY, Registry, RigRule, RuleFamily, Topic
 from rigdesign.checks.rules import hold
 from rigdesign.postprocessing.solved_rig import SolvedRig
-from rigdesign.results.check import NO_HOUSING, NO_LIMIT, NO_LOADS, Check
+from rigdesign.results.check import NO_HOUSING, NO_LIMIT, NO_LOADS, Check, HandCalculation
 from rigdesign.results.units import KELVIN, MICROMETRE, DisplayUnit
 from rigdesign.rig.model import build_rig
 from tests.builders.paths import CASES
@@ -141,8 +141,11 @@ def test_a_failing_check_names_what_makes_its_value_doubtful(
     held = hold(replace(rule().rule(10.0), id="temperature.housing"), 1.0)
     monkeypatch.setattr(checks, "estimated_checks", lambda solved: [scuffing, bulk, held])
     rows = [
-        {"quantity": "sliding loss, test.main", "computed": 176.0, "by_hand": 240.0, "unit": "W"},
-        {"quantity": "windage, test.main", "computed": 1.0, "by_hand": 2.0, "unit": "W"},
+        HandCalculation(quantity=quantity, computed=computed, by_hand=by_hand, unit="W", formula="")
+        for quantity, computed, by_hand in (
+            ("sliding loss, test.main", 176.0, 240.0),
+            ("windage, test.main", 1.0, 2.0),
+        )
     ]
     first, second, third = checks.all_checks(solved, rows)
     assert first.flags == second.flags == ("doubt",) and first.verdict == "fail"

@@ -16,7 +16,7 @@ from rigdesign.coupling.iteration import initial_state
 from rigdesign.coupling.located_loss import PointLosses
 from rigdesign.coupling.temperatures import boundary_conditions
 from rigdesign.coupling.time_run import held_points
-from rigdesign.report import results_document
+from rigdesign.report.results_json import results_document
 from rigdesign.results.result import RunResult
 from rigdesign.rig.model import build_rig
 from rigdesign.run.main import run_case

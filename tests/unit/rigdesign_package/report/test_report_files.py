@@ -11,13 +11,13 @@ import meshio
 import numpy as np
 import pytest
 
-from rigdesign.base.errors import OutputError
+from rigdesign.base.errors import NonFiniteResultError, OutputError
 from rigdesign.base.json_text import csv_text, to_plain, to_text
-from rigdesign.base.output_folder import file_stem, staged
+from rigdesign.base.output_folder import file_stem, prepare_output, staged
 from rigdesign.cli.terminal.checks import print_checks
-from rigdesign.report import NonFiniteResultError, prepare_output, results_document, write_results
 from rigdesign.report.junit import check_seconds, write_junit
-from rigdesign.report.results_json import read_result
+from rigdesign.report.results_json import read_result, results_document
+from rigdesign.report.writing import write_results
 from rigdesign.results.curve_files import without_references
 from tests.builders.commands import Rigdesign
 from tests.builders.report import gearbox_field, make_check, make_result, small_result

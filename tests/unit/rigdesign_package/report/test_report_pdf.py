@@ -8,8 +8,9 @@ import pytest
 from pypdf import PdfReader
 
 from rigdesign.base.errors import MissingLibraryError
-from rigdesign.report import Issue, write_results
+from rigdesign.report.input_sheets import Issue
 from rigdesign.report.pdf import require_pdf, write_pdf
+from rigdesign.report.writing import write_results
 from tests.builders.report import make_result
 from tests.builders.report_inputs import rig_inputs
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from rigdesign.report import write_results
 from rigdesign.report.results_json import results_schema
+from rigdesign.report.writing import write_results
 from rigdesign.results.quantity import Quantity, Records
 from tests.builders.commands import Rigdesign
 from tests.builders.paths import CASES

@@ -12,7 +12,8 @@ from rigdesign.case import load_case
 from rigdesign.cli import exit_status as ending
 from rigdesign.cli import main as cli
 from rigdesign.properties.oil import MIL_PRF_23699
-from rigdesign.report import results_document, write_results
+from rigdesign.report.results_json import results_document
+from rigdesign.report.writing import write_results
 from rigdesign.results.result import RunResult
 from rigdesign.results.thermal import TransientCurve, TransientResult
 from rigdesign.run.main import run_case

@@ -12,9 +12,9 @@ from rigdesign.case.provenance import InputRow
 from rigdesign.cli.exit_status import exit_status
 from rigdesign.cli.main import app
 from rigdesign.cli.terminal.difference import print_difference
-from rigdesign.report import results_document
 from rigdesign.report.numbers import change_text, quantity_texts
 from rigdesign.report.pages.difference import write_difference
+from rigdesign.report.results_json import results_document
 from rigdesign.studies.difference import difference_document, headline, results_difference
 from rigdesign.studies.stored_results import InputValue, changed_inputs, read_results, same_value
 from tests.builders.browser import browser  # noqa: F401 - a fixture

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from rigdesign.base.errors import OutputError
-from rigdesign.report import write_results
+from rigdesign.report.writing import write_results
 from rigdesign.studies.ledger import LEDGER_NAME
 from tests.builders.killed_writer import REFUSED, WRITTEN
 from tests.builders.output import attempts, held_against, published
