@@ -11,7 +11,7 @@ from rigdesign.checks.omissions import Omissions
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Omission, hold
 from rigdesign.results.check import Check
-from rigdesign.results.units import HOUR, DisplayUnit
+from rigdesign.results.units import HOUR, HOURS, DisplayUnit
 
 if TYPE_CHECKING:
     from rigdesign.postprocessing.solved_rig import SolvedRig
@@ -53,7 +53,7 @@ WARM_UP = RuleFamily(
     title="time until the supply temperature holds its setpoint, {place}",
     procedure="Thermal history (check --transient) of housings and oil circuits together: time after the start from "
     "which the supply temperature stays within its tolerance until the end of the last dwell.",
-    unit=DisplayUnit("h", 1.0 / HOUR),
+    unit=HOURS,
     group="transient",
     source="transient.warm_up; oil circuit with the limits of its heaters and coolers",
     places=supply_lines,

@@ -13,14 +13,13 @@ from rigdesign.case.model import Case
 from rigdesign.checks.omissions import HEAT, of_gearboxes
 from rigdesign.checks.registry import REGISTRY, SPEEDS, RuleFamily, Topic, Values
 from rigdesign.results.check import Check
-from rigdesign.results.units import DEGREE_CELSIUS, HOUR, MICROMETRE, NUMBER, DisplayUnit
+from rigdesign.results.units import DEGREE_CELSIUS, HOUR, HOURS, MICROMETRE, NUMBER, DisplayUnit
 
 if TYPE_CHECKING:
     from dynamics.rotor.rolling_state import RollingState
     from rigdesign.postprocessing.solved_rig import SolvedRig
 
 GROUP = "bearings"
-HOURS = DisplayUnit("h", 1.0 / HOUR)
 NEVER = "no rolling bearing turns under load at a held stage"
 
 

@@ -16,7 +16,7 @@ from rigdesign.checks.temperatures import WALLS
 from rigdesign.results.check import Check
 from rigdesign.results.serialisation.events import EXTREME_UNITS
 from rigdesign.results.thermal import Extreme
-from rigdesign.results.units import HOUR, DisplayUnit
+from rigdesign.results.units import HOUR, HOURS
 
 if TYPE_CHECKING:
     from rigdesign.postprocessing.solved_rig import SolvedRig
@@ -104,7 +104,7 @@ EXTREMES = (
 SOAK = RuleFamily(
     key="transient.soak",
     title="warm-up needed before full torque, {place} gearbox",
-    unit=DisplayUnit("h", 1.0 / HOUR),
+    unit=HOURS,
     group=GROUP,
     procedure="Thermal history (check --transient): shortest warm-up after which every clearance limit holds up to the "
     "end of the dwell.",

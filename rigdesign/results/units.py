@@ -51,6 +51,7 @@ LITRE_PER_MINUTE = DisplayUnit("l/min", L_MIN)
 KILOWATT = DisplayUnit("kW", KW)
 REVOLUTION_PER_MINUTE = DisplayUnit("rpm", RPM)
 NEWTON_METRE = DisplayUnit("N m")
+HOURS = DisplayUnit("h", 1.0 / HOUR)
 NUMBER = DisplayUnit("-")
 
 UNITS = {
@@ -66,8 +67,9 @@ UNITS = {
         KILOWATT,
         REVOLUTION_PER_MINUTE,
         NEWTON_METRE,
+        HOURS,
         NUMBER,
-        *map(DisplayUnit, ("W", "N", "Hz", "s", "h", "m2")),
+        *map(DisplayUnit, ("W", "N", "Hz", "s", "m2")),
         DisplayUnit("ms", 1e3),
         DisplayUnit("deg", 180.0 / math.pi),
         DisplayUnit("N/mm", 1e-3),
@@ -76,4 +78,4 @@ UNITS = {
         DisplayUnit("m3/h", HOUR),
     )
 }
-"""By name; a life is kept in hours."""
+"""By name."""
