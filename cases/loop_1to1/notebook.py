@@ -52,7 +52,7 @@ for inlet in ("40 degC", "80 degC"):
     power: dict[str, float] = {}
     for row in changed.losses:
         if row.stage == "test":
-            power[row.kind] = power.get(row.kind, 0.0) + row.power_W
+            power[row.kind] = power.get(row.kind, 0.0) + row.power
     print(
         f"oil at {inlet}: {changed.verdict}; "
         + ", ".join(f"{kind} {watt:.0f} W" for kind, watt in power.items())

@@ -225,7 +225,7 @@ def _temperature(solved: SolvedRig, part: str) -> Found:
     found = [housing for housing in solved.temperatures if housing.gearbox == box]
     if not found:
         return None, NO_HOUSING
-    return worst((housing.highest, housing.hottest_body) for housing in found)
+    return worst((housing.max_temperature, housing.max_temperature_body) for housing in found)
 
 
 def _saturated(solved: SolvedRig, check: Check) -> Omissions:

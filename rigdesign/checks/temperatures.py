@@ -57,7 +57,7 @@ def _untempered(solved: SolvedRig, check: Check) -> Omissions:
 
 def _housings(solved: SolvedRig) -> Values:
     return (
-        (found.bodies["housing"].highest, f"{found.gearbox}, stage {found.stage}")
+        (found.bodies["housing"].max, f"{found.gearbox}, stage {found.stage}")
         for found in solved.temperatures
     )
 
@@ -81,10 +81,10 @@ def tempering_distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
     tempering temperature are left out.
     """
     teeth = {
-        (split.gear, found.stage): split.tooth_temperature
+        (split.gear, found.stage): split.tooth
         for found in solved.temperatures
         for split in found.heat_split
-        if split.tooth_temperature is not None
+        if split.tooth is not None
     }
     for point in solved.points:
         stage = point.point.stage

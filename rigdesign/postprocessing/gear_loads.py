@@ -284,7 +284,7 @@ def bulk_temperature(rig: Rig, point: PointResult, mesh: int) -> tuple[float, st
     of_teeth = True
     for gear in rig.mesh_gears(name):
         split = splits.get(gear.part)
-        tooth = None if split is None else split.tooth_temperature
+        tooth = None if split is None else split.tooth
         of_teeth &= tooth is not None
         found.append(state.gear_temperature[gear] if tooth is None else tooth)
     return math.fsum(

@@ -22,6 +22,7 @@ from rigdesign.coupling.housing_context import (
     segments,
 )
 from rigdesign.coupling.iteration import IterationResult
+from rigdesign.coupling.located_loss import PlacedLoss
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.oil import heater_and_cooler
 from rigdesign.coupling.oil_circuits import DriveHeat, circuit_balances, drive_heat, into_tank
@@ -43,7 +44,7 @@ from rigdesign.results.housing import (
     Sink,
     StageBalance,
 )
-from rigdesign.results.thermal import TemperatureField
+from rigdesign.results.thermal import LossRow, OilRow, TemperatureField
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import ChamberOil
 from rigdesign.rig_heat.component import ComponentHeat, room_balance
@@ -107,10 +108,10 @@ def compared_temperatures(rig: Rig, result: PointResult, field: HousingField) ->
     readings = {housing.radiation_included: field, not housing.radiation_included: other}
     return replace(
         housing_temperatures(rig, result, field),
-        radiation=RadiationReadings(
-            highest_apart=float(readings[False].temperature.max()),
-            highest_included=float(readings[True].temperature.max()),
-            other_room_heat=heat_to_room(other),
+        alternatives=RadiationReadings(
+            highest_radiation_included_false=float(readings[False].temperature.max()),
+            highest_radiation_included_true=float(readings[True].temperature.max()),
+            heat_to_the_room_under_the_other_reading=heat_to_room(other),
         ),
         heat_split=heat_splits(rig, result, field),
     )
@@ -123,16 +124,47 @@ def housing_temperatures(rig: Rig, result: PointResult, field: HousingField) -> 
     return HousingTemperatures(
         gearbox=field.gearbox,
         stage=result.point.stage,
-        highest=float(field.temperature.max()),
-        hottest_body=max(bodies, key=lambda body: bodies[body].highest),
+        max_temperature=float(field.temperature.max()),
+        max_temperature_body=max(bodies, key=lambda body: bodies[body].max),
         bodies=bodies,
         heat=tuple(field.solution.balance.rows),
-        closure=field.solution.balance.closure,
+        closure_relative=field.solution.balance.closure,
         room_heat=heat_to_room(field),
         nodes=len(mesh.points),
         elements=len(mesh.cells),
         fluids=tuple(fluid_temperatures(rig, field, result.last.coupling_state.oil_outlet)),
     )
+
+
+def losses_of(stage: str, losses: Sequence[PlacedLoss]) -> Iterator[LossRow]:
+    """Losses of one stage by place."""
+    for placed in losses:
+        yield LossRow(
+            place=placed.name,
+            kind=placed.loss.kind,
+            stage=stage,
+            power=placed.loss.power,
+            into_oil=placed.into_oil,
+            into_body=placed.into_body,
+            not_heat=placed.not_heat,
+            pump=placed.pumped,
+            basis="input" if placed.given else "computed",
+            details=placed.loss.details,
+        )
+
+
+def oil_of(point: PointResult) -> Iterator[OilRow]:
+    """Oil streams of one held stage; none for bearings that are not fed, whose heat is in the oil of the gears."""
+    for stream in point.last.streams:
+        if stream.flow or stream.heat or not stream.name.endswith(BEARING_OIL):
+            yield OilRow(
+                consumer=stream.name,
+                stage=point.point.stage,
+                inlet=stream.inlet,
+                outlet=stream.outlet,
+                flow=stream.flow,
+                heat=stream.heat,
+            )
 
 
 def body_temperatures(rig: Rig, field: HousingField) -> dict[str, BodyTemperature]:
@@ -144,8 +176,8 @@ def body_temperatures(rig: Rig, field: HousingField) -> dict[str, BodyTemperatur
         nodes = field.temperature[np.unique(mesh.cells[cells])]
         temperatures[body] = BodyTemperature(
             mean=elements.body_mean(field.temperature, body),
-            highest=float(nodes.max()),
-            lowest=float(nodes.min()),
+            max=float(nodes.max()),
+            min=float(nodes.min()),
         )
     return temperatures
 
@@ -340,9 +372,9 @@ def _split(
         friction=heat,
         at_once=heat - reached,
         film=-math.fsum(row.power for row in rows if row.kind == GEAR_OIL),
-        bulk_temperature=body_mean(rig, field, f"gear_{box.gears[gear].shaft}"),
-        tooth_temperature=tooth,
-        coefficient=coefficient,
+        bulk=body_mean(rig, field, f"gear_{box.gears[gear].shaft}"),
+        tooth=tooth,
+        flank_film=coefficient,
         fin_efficiency=efficiency,
     )
 

@@ -1,10 +1,8 @@
 """Curves and tables as .csv: a header line with units in square brackets, dot as decimal sign."""
 
-from typing import Any
-
 from rigdesign.base.json_text import csv_text
+from rigdesign.results.quantity import row
 from rigdesign.results.result import RunResult
-from rigdesign.results.thermal import HeatRow
 
 
 def curve_tables(result: RunResult) -> dict[str, str]:
@@ -49,27 +47,14 @@ def _losses(result: RunResult) -> str:
         "from the pump [W]",
         "basis",
     )
-    rows = (
-        (
-            r.place,
-            r.kind,
-            r.stage,
-            r.power_W,
-            r.into_oil_W,
-            r.into_body_W,
-            r.not_heat_W,
-            r.pump_W,
-            r.basis,
-        )
-        for r in result.losses
-    )
-    return csv_text(header, rows)
+    names = ("place", "kind", "stage", "power", "into_oil", "into_body", "not_heat", "pump", "basis")
+    return csv_text(header, (list(row(item, *names).values()) for item in result.losses))
 
 
 def _oil(result: RunResult) -> str:
     header = ("consumer", "stage", "inlet [degC]", "outlet [degC]", "flow [l/min]", "heat [W]")
-    rows = ((r.consumer, r.stage, r.inlet_degC, r.outlet_degC, r.flow_l_min, r.heat_W) for r in result.oil)
-    return csv_text(header, rows)
+    names = ("consumer", "stage", "inlet", "outlet", "flow", "heat")
+    return csv_text(header, (list(row(item, *names).values()) for item in result.oil))
 
 
 def _heat(result: RunResult) -> str:
@@ -90,19 +75,10 @@ def _heat(result: RunResult) -> str:
         (
             case.gearbox,
             case.stage,
-            row.surface,
-            row.kind,
-            row.power_W,
-            row.area_m2,
-            row.mean_temperature_degC,
-            *_coefficient(row),
+            *row(flow, "surface", "kind", "power", "area", "mean_temperature").values(),
+            *(getattr(flow.coefficient, key, None) for key in ("value", "formula", "valid_range", "source")),
         )
         for case in result.thermal
-        for row in case.heat
+        for flow in case.heat
     )
     return csv_text(header, rows)
-
-
-def _coefficient(row: HeatRow) -> tuple[Any, ...]:
-    coefficient = row.coefficient or {}
-    return tuple(coefficient.get(key) for key in ("value", "formula", "valid_range", "source"))

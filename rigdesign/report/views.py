@@ -92,7 +92,7 @@ def main_stage(result: RunResult) -> str:
     """The stage that turns over the most heat, shown in the figures of one stage; empty without losses."""
     totals: dict[str, float] = {}
     for row in result.losses:
-        totals[row.stage] = totals.get(row.stage, 0.0) + row.power_W
+        totals[row.stage] = totals.get(row.stage, 0.0) + row.power
     return max(totals, key=lambda stage: totals[stage]) if totals else ""
 
 
@@ -132,7 +132,7 @@ def loss_table(losses: Sequence[LossRow]) -> tuple[list[str], list[tuple[str, li
     powers: dict[str, dict[str, float]] = {}
     for row in losses:
         at_place = powers.setdefault(row.place, {})
-        at_place[row.stage] = at_place.get(row.stage, 0.0) + row.power_W
+        at_place[row.stage] = at_place.get(row.stage, 0.0) + row.power
     return stages, [(place, [found.get(stage) for stage in stages]) for place, found in powers.items()]
 
 

@@ -88,33 +88,33 @@ class RigHeat:
 
 @dataclass(frozen=True, kw_only=True)
 class BodyTemperature:
-    """Temperatures of one body [K]."""
+    """Temperatures of one body."""
 
-    mean: float
+    mean: Degrees
     """Over its volume."""
-    highest: float
-    lowest: float
+    max: Degrees
+    min: Degrees
 
 
 @dataclass(frozen=True, kw_only=True)
 class GearHeatSplit:
-    """Where the friction heat of one gear goes."""
+    """Where the friction heat of one gear goes; friction = at once into the oil + into the rim."""
 
     gear: str
     """``gearbox.gear``."""
     rule: Literal["assumed", "flank_film"]
-    friction: float
-    """Of all its meshes, into its flanks [W]."""
-    at_once: float
-    """Leaves with the oil before it reaches the rim [W]."""
-    film: float
-    """From the rim into the gear oil [W]; other heat of the gear leaves this way too."""
-    bulk_temperature: float
-    """Mean of the gear body [K]."""
-    tooth_temperature: float | None
-    """Mean of the teeth [K]; None without a flank film."""
-    coefficient: float | None
-    """Of the flank film, mean over all flanks [W/(m2 K)]."""
+    friction: Watts
+    """Of all its meshes, into its flanks."""
+    at_once: Watts
+    """Leaves with the oil before it reaches the rim."""
+    film: Watts
+    """From the rim into the gear oil; other heat of the gear leaves this way too."""
+    bulk: Degrees
+    """Mean of the gear body."""
+    tooth: Annotated[float | None, Quantity("degC")]
+    """Mean of the teeth; None without a flank film."""
+    flank_film: Annotated[float | None, Quantity("W/(m2 K)")]
+    """Mean coefficient over all flanks."""
     fin_efficiency: float | None
     weak_film: "GearHeatSplit | None" = None
     """The same gear at the low ends of the ranges of the film; None where the case states none."""
@@ -122,39 +122,42 @@ class GearHeatSplit:
     """At the high ends."""
 
     @property
-    def share_into_oil(self) -> float:
+    def share_into_oil(self) -> Annotated[float, Quantity()]:
         """(at once + film) / friction; above 1 where other heat of the gear leaves through its teeth."""
         return (self.at_once + self.film) / self.friction
+
+    @property
+    def share_into_bodies(self) -> Annotated[float, Quantity()]:
+        """The rest of the friction."""
+        return 1.0 - self.share_into_oil
 
 
 @dataclass(frozen=True, kw_only=True)
 class RadiationReadings:
     """The field under both readings of the given film coefficients: radiation apart from them, or counted in them."""
 
-    highest_apart: float
-    """[K]"""
-    highest_included: float
-    """[K]"""
-    other_room_heat: float
-    """Heat to the room under the reading that the case does not take [W]."""
+    highest_radiation_included_false: Degrees
+    highest_radiation_included_true: Degrees
+    heat_to_the_room_under_the_other_reading: Watts
+    """Under the one that the case does not take."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class FluidTemperature:
-    """A volume or stream of a housing."""
+    """A volume or stream of a housing; heat + power + links = 0 for a volume."""
 
     name: str
     kind: Literal["volume", "stream"]
-    inlet: float | None
-    """Of a stream [K]; None for a volume."""
-    temperature: float
-    """Of a volume, at the outlet of a stream [K]."""
-    heat: float
-    """From its surfaces into it [W]."""
-    links: Mapping[str, float]
-    """Link -> heat that it brings into the volume [W]."""
-    power: float = 0.0
-    """Set free in it [W]."""
+    inlet: Annotated[float | None, Quantity("degC")]
+    """Of a stream; None for a volume."""
+    temperature: Degrees
+    """Of a volume, at the outlet of a stream."""
+    heat: Watts
+    """From its surfaces into it."""
+    links: Annotated[Mapping[str, float], Quantity("W")]
+    """Link -> heat that it brings into the volume."""
+    power: Watts = 0.0
+    """Set free in it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,19 +166,18 @@ class HousingTemperatures:
 
     gearbox: str
     stage: str
-    highest: float
-    """Of the whole field [K]."""
-    hottest_body: str
+    max_temperature: Degrees
+    """Of the whole field."""
+    max_temperature_body: str
     bodies: Mapping[str, BodyTemperature]
     heat: tuple[HeatFlow, ...]
     """Of every condition at every surface."""
-    closure: float
+    closure_relative: float
     """Gap of the heat balance relative to the heat turned over."""
-    room_heat: float
-    """[W]"""
+    room_heat: Watts
     nodes: int
     elements: int
-    radiation: RadiationReadings | None = None
+    alternatives: RadiationReadings | None = None
     """None where the other reading was not solved."""
     heat_split: tuple[GearHeatSplit, ...] = ()
     """Of every gear that friction heats."""

@@ -104,7 +104,14 @@ def _solver_records() -> Mapping[str, type]:
     return {record.__name__: record for record in (NamedMesh, RigMode, Soak)}
 
 
-_OF_SOLVERS: Mapping[str, Mapping[str, Quantity]] = {"RigMode": {"frequency": Quantity("Hz")}}
+_OF_SOLVERS: Mapping[str, Mapping[str, Quantity]] = {
+    "RigMode": {"frequency": Quantity("Hz")},
+    "HeatFlow": {
+        "power": Quantity("W"),
+        "area": Quantity("m2"),
+        "mean_temperature": Quantity("degC"),
+    },
+}
 """Quantities of fields of solver records, which know nothing of results."""
 
 

@@ -12,7 +12,7 @@ from rigdesign.case.provenance import InputRow, MeasuredInput
 from rigdesign.results.check import STATUSES, Checks, Finding, HandCalculation, Status
 from rigdesign.results.curves import Columns, curves_of, event_curves, lateral_curves
 from rigdesign.results.dynamics import DynamicsResult
-from rigdesign.results.housing import CircuitBalance, CoolingBalance, RigHeat
+from rigdesign.results.housing import CircuitBalance, CoolingBalance, HousingTemperatures, RigHeat
 from rigdesign.results.lateral import LateralVibration, RollingBearingRecord
 from rigdesign.results.loads import EventRecord
 from rigdesign.results.quantity import Quantity, Records, to_dataframe
@@ -22,7 +22,6 @@ from rigdesign.results.thermal import (
     LossRow,
     OilRow,
     TemperatureField,
-    ThermalResult,
     TransientResult,
 )
 
@@ -129,8 +128,8 @@ class RunResult:
     verdict: Literal["pass", "open", "fail"]
     checks: Checks
     dynamics: DynamicsResult | None
-    losses: list[LossRow]
-    oil: list[OilRow]
+    losses: Records[LossRow]
+    oil: Records[OilRow]
     events: Records[EventRecord] = field(default_factory=Records)
     rolling_bearings: Records[RollingBearingRecord] = field(default_factory=Records)
     """Of every held stage."""
@@ -142,7 +141,8 @@ class RunResult:
     """Of every held stage, of a case that states `rig_heat`."""
     oil_circuits: Records[CircuitBalance] = field(default_factory=Records)
     """Of every held stage."""
-    thermal: list[ThermalResult]
+    thermal: Records[HousingTemperatures]
+    """Of every housing at every held stage."""
     expansion: list[ExpansionResult]
     coupling: Records[CouplingHistory]
     discretisation: list[DiscretisationRow] = field(default_factory=list)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+from rigdesign.results.quantity import Degrees, Quantity, Watts
 
 if TYPE_CHECKING:
     from rigdesign.transient.soak import Soak
@@ -15,21 +18,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class LossRow:
-    """Power loss of one place at one stage [W]; into_oil + into_body + not_heat = power + pump."""
+    """Power loss of one place at one stage; into_oil + into_body + not_heat = power + pump."""
 
     place: str
     kind: str
     stage: str
-    power_W: float  # noqa: N815
-    into_oil_W: float  # noqa: N815
-    into_body_W: float  # noqa: N815
-    pump_W: float = 0.0  # noqa: N815
-    """Given by the oil pump, not by the shaft: kinetic energy of the jets. A negative ``power_W`` with it is what a
-    jet faster than the pitch line gives to the shaft."""
+    power: Watts
+    into_oil: Watts
+    into_body: Watts
+    pump: Watts = 0.0
+    """Given by the oil pump, not by the shaft: kinetic energy of the jets. A negative ``power`` with it is what a jet
+    faster than the pitch line gives to the shaft."""
     basis: Literal["computed", "input"]
-    not_heat_W: float = 0.0  # noqa: N815
+    not_heat: Watts = 0.0
     """Work of a mesh damper: power of the motor that is heat of no part."""
-    details: dict[str, float | str] = field(default_factory=dict)
+    details: Mapping[str, float | str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,93 +41,11 @@ class OilRow:
 
     consumer: str
     stage: str
-    inlet_degC: float  # noqa: N815
-    outlet_degC: float  # noqa: N815
-    flow_l_min: float
-    heat_W: float  # noqa: N815
+    inlet: Degrees
+    outlet: Degrees
+    flow: Annotated[float, Quantity("l/min")]
+    heat: Watts
     """Loss into the oil plus heat taken from bodies."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class HeatRow:
-    """Heat of one surface [W], positive into the solid."""
-
-    surface: str
-    kind: str
-    power_W: float  # noqa: N815
-    area_m2: float
-    mean_temperature_degC: float  # noqa: N815
-    coefficient: dict[str, Any] | None = None
-    """Film coefficient with formula, inputs, range, source."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class HeatSplitRow:
-    """Where the friction heat of one gear goes; friction = at once into the oil + into the rim."""
-
-    gear: str
-    rule: Literal["assumed", "flank_film"]
-    friction_W: float  # noqa: N815
-    """Of all its meshes, into its flanks."""
-    at_once_W: float  # noqa: N815
-    """Leaves with the oil before it reaches the rim."""
-    film_W: float  # noqa: N815
-    """From the rim into the gear oil; other heat of the gear leaves this way too."""
-    share_into_oil: float
-    """(at once + film) / friction; above 1 where other heat of the gear leaves through its teeth."""
-    share_into_bodies: float
-    bulk_degC: float  # noqa: N815
-    """Mean of the gear body."""
-    tooth_degC: float | None  # noqa: N815
-    """Mean of the teeth; None without a flank film."""
-    flank_film_W_m2K: float | None  # noqa: N815
-    """Mean over all flanks."""
-    fin_efficiency: float | None
-    weak_film: dict[str, float | None] | None = None
-    """share_into_oil, bulk_degC, tooth_degC, flank_film_W_m2K at the low ends of the ranges of the film."""
-    strong_film: dict[str, float | None] | None = None
-    """The same at the high ends."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class FluidRow:
-    """A volume or stream of a housing; heat + power + links = 0 for a volume."""
-
-    name: str
-    kind: Literal["volume", "stream"]
-    inlet_degC: float | None  # noqa: N815
-    """Of a stream."""
-    temperature_degC: float  # noqa: N815
-    """Of a volume, at the outlet of a stream."""
-    heat_W: float  # noqa: N815
-    """From its surfaces into it."""
-    power_W: float = 0.0  # noqa: N815
-    """Set free in it."""
-    links_W: dict[str, float] = field(default_factory=dict)  # noqa: N815
-    """Link -> heat that it brings into the volume."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class ThermalResult:
-    """Steady temperatures of one gearbox at one held stage."""
-
-    gearbox: str
-    stage: str
-    max_temperature_degC: float  # noqa: N815
-    max_temperature_body: str
-    heat: list[HeatRow]
-    closure_relative: float
-    nodes: int
-    elements: int
-    bodies: dict[str, dict[str, float]]
-    """body -> {mean_degC, max_degC, min_degC}."""
-    room_heat_W: float  # noqa: N815
-    alternatives: dict[str, float]
-    """Highest temperature under either reading of radiation, heat to the room under the one not taken."""
-    heat_split: list[HeatSplitRow] = field(default_factory=list)
-    """Of the friction heat of every gear."""
-    fluids: list[FluidRow] = field(default_factory=list)
-    """Volumes and streams of the housing."""
 
 
 @dataclass(frozen=True, kw_only=True)

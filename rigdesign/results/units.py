@@ -76,6 +76,7 @@ UNITS = {
         DisplayUnit("N/um", 1e-6),
         DisplayUnit("kN m/rad", 1e-3),
         DisplayUnit("m3/h", HOUR),
+        DisplayUnit("W/(m2 K)"),
     )
 }
 """By name."""

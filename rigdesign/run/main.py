@@ -33,18 +33,19 @@ from rigdesign.postprocessing.dynamics import DynamicRun
 from rigdesign.postprocessing.dynamics_section import dynamics_section
 from rigdesign.postprocessing.events import solve_events
 from rigdesign.postprocessing.hand_calculation import hand_checks
-from rigdesign.postprocessing.housing import circuit_balances_at, compared_temperatures, fields_of
+from rigdesign.postprocessing.housing import (
+    circuit_balances_at,
+    compared_temperatures,
+    fields_of,
+    losses_of,
+    oil_of,
+)
 from rigdesign.postprocessing.nearest_resonance import held_crossings, require_damping
 from rigdesign.postprocessing.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.postprocessing.warm_gearbox import rolling_bearings
 from rigdesign.results.check import Check, Checks, Finding, overall
 from rigdesign.results.quantity import Records
 from rigdesign.results.result import CouplingHistory, IterationResidual, RunResult
-from rigdesign.results.serialisation.housing import (
-    loss_rows,
-    oil_rows,
-    thermal_row,
-)
 from rigdesign.results.serialisation.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.tooth_influence import Count
@@ -208,15 +209,15 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         verdict=overall(checks),
         checks=Checks(checks),
         dynamics=None if solved.run is None or solved.loads is None else dynamics_section(solved),
-        losses=[row for stage, found in losses.items() for row in loss_rows(stage, found)],
-        oil=[row for p in points for row in oil_rows(p.point.stage, p.last.streams)],
+        losses=Records(row for stage, found in losses.items() for row in losses_of(stage, found)),
+        oil=Records(row for p in points for row in oil_of(p)),
         events=Records(solved.events),
         rolling_bearings=Records(rolling_bearings(rig, points)),
         lateral=solved.lateral,
         cooler=Records(solved.cooling),
         rig_heat=Records(balance.heat for balance in solved.balances if case.rig_heat.stated),
         oil_circuits=Records(row for balance in solved.balances for row in circuit_balances_at(balance)),
-        thermal=[thermal_row(found) for found in solved.temperatures],
+        thermal=Records(solved.temperatures),
         expansion=[expansion_row(warm) for warm in solved.warm],
         coupling=Records(_history(p) for p in points),
         discretisation=list(solved.discretisation),

@@ -351,7 +351,7 @@ def _hottest(solved: SolvedRig, branches: Sequence[Branch], planned: bool) -> It
 def _steady_temperature(solved: SolvedRig, quantity: str) -> float:
     """Highest steady temperature of the housings, or of the means of the gear bodies [K]."""
     if quantity == "housing_temperature":
-        return max(found.bodies["housing"].highest for found in solved.temperatures)
+        return max(found.bodies["housing"].max for found in solved.temperatures)
     return max(
         temperature.mean
         for found in solved.temperatures

@@ -29,6 +29,7 @@ from rigdesign.results.ranges import (
     TemperatureRange,
 )
 from rigdesign.results.result import RunResult
+from rigdesign.results.units import ZERO
 from rigdesign.studies.modified_rig import Reanalysis, parts_of
 from rigdesign.studies.reference_rig import (
     ReanalysisResult,
@@ -448,7 +449,7 @@ def joined(
 
 def _offset(result: RunResult, stated: EndResult) -> float:
     """Highest temperature of the run above that of the stated rig at the fidelity of the ends [K]."""
-    hottest = max((row.max_temperature_degC for row in result.thermal), default=0.0)
+    hottest = max((row.max_temperature - ZERO for row in result.thermal), default=0.0)
     return 0.0 if stated.max_temperature is None else hottest - stated.max_temperature
 
 
@@ -487,7 +488,7 @@ def _temperatures(
     result: RunResult, stated: EndResult, ends: list[tuple[RangeEnd, EndResult]]
 ) -> TemperatureRange | None:
     """Range of the highest temperature: that of the run, shifted by what every end changes."""
-    hottest = max((row.max_temperature_degC for row in result.thermal), default=None)
+    hottest = max((row.max_temperature - ZERO for row in result.thermal), default=None)
     if hottest is None or stated.max_temperature is None:
         return None
     shifts = {

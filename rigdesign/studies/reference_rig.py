@@ -102,7 +102,7 @@ def result_of(
     solved: SolvedRig, evaluate: Callable[[SolvedRig], Sequence[Check]], parts: tuple[ModelPart, ...] = ()
 ) -> ReanalysisResult:
     """The checks of a solved rig and its highest temperature."""
-    hottest = max((found.highest - ZERO for found in solved.temperatures), default=None)
+    hottest = max((found.max_temperature - ZERO for found in solved.temperatures), default=None)
     return ReanalysisResult(checks=evaluate(solved), max_temperature_degC=hottest, parts=parts)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from rigdesign.base.errors import UsageError, shortened
 from rigdesign.results.check import Check, Finding, Verdict
 from rigdesign.results.result import RunResult
+from rigdesign.results.units import ZERO
 from rigdesign.studies.grid import Variation
 
 if TYPE_CHECKING:
@@ -160,7 +161,7 @@ class CheckedPoint:
 
 def checked_point(result: RunResult) -> CheckedPoint:
     """Of a whole run."""
-    hottest = max((item.max_temperature_degC for item in result.thermal), default=None)
+    hottest = max((item.max_temperature - ZERO for item in result.thermal), default=None)
     return CheckedPoint(verdict=result.verdict, max_temperature_degC=hottest, checks=result.checks)
 
 

@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 
+from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.checks.rules import Rule, distance
 from rigdesign.results.check import Check, Checks, Finding, HandCalculation
@@ -14,7 +15,12 @@ from rigdesign.results.dynamics import (
     RampHistory,
     RootStressHistory,
 )
-from rigdesign.results.housing import CoolingBalance
+from rigdesign.results.housing import (
+    BodyTemperature,
+    CoolingBalance,
+    HousingTemperatures,
+    RadiationReadings,
+)
 from rigdesign.results.loads import (
     ContactLoss,
     HeldBracing,
@@ -30,14 +36,14 @@ from rigdesign.results.quantity import Records
 from rigdesign.results.result import CouplingHistory, IterationResidual, RunResult
 from rigdesign.results.thermal import (
     ExpansionResult,
-    HeatRow,
     LossRow,
     OilRow,
     TemperatureField,
-    ThermalResult,
 )
-from rigdesign.results.units import RPM
+from rigdesign.results.units import L_MIN, RPM
+from thermal.conduction.balance import HeatFlow
 from thermal.fe.mesh import NamedMesh
+from thermal.films.law import FilmCoefficient
 
 KUHN = [(0, 1, 3, 7), (0, 1, 5, 7), (0, 2, 3, 7), (0, 2, 6, 7), (0, 4, 5, 7), (0, 4, 6, 7)]
 TET_EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
@@ -384,9 +390,9 @@ def losses():
             place=place,
             kind=kind,
             stage=stage,
-            power_W=share * power,
-            into_oil_W=0.8 * share * power,
-            into_body_W=0.2 * share * power,
+            power=share * power,
+            into_oil=0.8 * share * power,
+            into_body=0.2 * share * power,
             basis="computed",
             details={"friction_coefficient": 0.021},
         )
@@ -396,14 +402,13 @@ def losses():
 
 
 def thermal_and_expansion():
-    film = {
-        "value": 19.5,
-        "formula": "niemann_winter",
-        "inputs": {"wall_K": 393.15, "height_m": 0.4},
-        "valid_range": "0 < dT < 150 K",
-        "source": "P2, Formula 2",
-        "warnings": (),
-    }
+    film = FilmCoefficient(
+        value=19.5,
+        formula="niemann_winter",
+        inputs={"wall_K": 393.15, "height_m": 0.4},
+        valid_range="0 < dT < 150 K",
+        source="P2, Formula 2",
+    )
     heat = [
         ("housing_warm", "air", -800.0, 0.35, film),
         ("housing_cold", "air", -962.0, 1.1, film),
@@ -411,21 +416,25 @@ def thermal_and_expansion():
         ("chamber_wall", "oil", 2300.0, 0.4, film),
         ("shells", "bearing_film", 79.0, 0.02, None),
     ]
-    thermal = ThermalResult(
+    thermal = HousingTemperatures(
         gearbox="test",
         stage="dwell",
-        max_temperature_degC=178.6,
+        max_temperature=178.6 + ZERO_CELSIUS,
         max_temperature_body="shaft_pinion",
-        heat=[
-            HeatRow(surface=s, kind=k, power_W=p, area_m2=a, mean_temperature_degC=120.0, coefficient=c)
+        heat=tuple(
+            HeatFlow(surface=s, kind=k, power=p, area=a, mean_temperature=393.15, piece=0, coefficient=c)
             for s, k, p, a, c in heat
-        ],
+        ),
         closure_relative=3.1e-11,
         nodes=29412,
         elements=18234,
-        bodies={"housing": {"mean_degC": 98.0, "max_degC": 158.0, "min_degC": 41.0}},
-        room_heat_W=2379.0,
-        alternatives={"radiation_included": 178.6, "radiation_separate": 171.2},
+        bodies={"housing": BodyTemperature(mean=371.15, max=431.15, min=314.15)},
+        room_heat=2379.0,
+        alternatives=RadiationReadings(
+            highest_radiation_included_false=444.35,
+            highest_radiation_included_true=451.75,
+            heat_to_the_room_under_the_other_reading=2210.0,
+        ),
     )
     angle = np.linspace(0, 360, 37)
     seals = [
@@ -489,10 +498,10 @@ def make_result(**changes):
             OilRow(
                 consumer=f"bearing_{n}",
                 stage="dwell",
-                inlet_degC=40.0,
-                outlet_degC=52.0 + n,
-                flow_l_min=2.0,
-                heat_W=650.0,
+                inlet=313.15,
+                outlet=325.15 + n,
+                flow=2.0 / L_MIN,
+                heat=650.0,
             )
             for n in range(1, 9)
         ]
@@ -500,10 +509,10 @@ def make_result(**changes):
             OilRow(
                 consumer="test_mesh",
                 stage="dwell",
-                inlet_degC=140.0,
-                outlet_degC=151.0,
-                flow_l_min=12.0,
-                heat_W=2900.0,
+                inlet=413.15,
+                outlet=424.15,
+                flow=12.0 / L_MIN,
+                heat=2900.0,
             )
         ],
         "cooler": [

@@ -17,10 +17,11 @@ from functools import cache
 from math import fsum
 from statistics import fmean
 
+from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
+from rigdesign.results.housing import HousingTemperatures
 from rigdesign.results.result import RunResult
-from rigdesign.results.thermal import ThermalResult
 from tests.published.rows import Goal, PublishedQuantity, ValidationRow, compare
 
 AIR, RADIATION, BEARING_OIL = "air", "radiation", "bearing_oil"
@@ -62,19 +63,19 @@ def main_rig_rows(run: Callable[[str], RunResult]) -> Iterator[ValidationRow]:
         )
         thermal = result.thermal[0]
         yield _row(
-            reading, highest, thermal.max_temperature_degC, Goal(5.0 / HIGHEST),
+            reading, highest, thermal.max_temperature - ZERO_CELSIUS, Goal(5.0 / HIGHEST),
             f"at {thermal.max_temperature_body}",
         )  # fmt: skip
         yield from _expansion(reading, result)
 
 
-def _heat(reading: str, thermal: ThermalResult) -> Iterator[ValidationRow]:
+def _heat(reading: str, thermal: HousingTemperatures) -> Iterator[ValidationRow]:
     for name, text, value, kind, surfaces in HEAT:
         rows = [row for row in thermal.heat if row.kind == kind and row.surface.startswith(surfaces)]
         heat = PublishedQuantity(id=f"P2-{name}", text=text, source="P2, Figure 12", value=value, unit="W")
-        area = fsum(row.area_m2 for row in rows)
+        area = fsum(row.area for row in rows)
         yield _row(
-            reading, heat, -fsum(row.power_W for row in rows), HEAT_GOAL, f"over {area:.2f} m2 of our box"
+            reading, heat, -fsum(row.power for row in rows), HEAT_GOAL, f"over {area:.2f} m2 of our box"
         )
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from math import pi
 from statistics import fmean
 
+from rigdesign.base.units import ZERO_CELSIUS
 from rigdesign.results.result import RunResult
 from tests.published.rows import Gate, PublishedQuantity, ValidationRow, Window, compare
 
@@ -53,7 +54,7 @@ def _heat(result: RunResult) -> Iterator[ValidationRow]:
                 printed="178.59 for the main rig",
                 unit="degC",
             ),
-            thermal.max_temperature_degC,
+            thermal.max_temperature - ZERO_CELSIUS,
             "predicted",
             assumptions=f"prototype at {thermal.max_temperature_body}; housing assumed, sinks of the "
             "bearings at film temperature instead of 40 degC",
@@ -66,7 +67,7 @@ def _heat(result: RunResult) -> Iterator[ValidationRow]:
                 printed="4264 for the main rig",
                 unit="W",
             ),
-            thermal.room_heat_W,
+            thermal.room_heat,
             "predicted",
             assumptions="prototype; housing and clamping field assumed",
         )
@@ -84,14 +85,14 @@ def _losses(result: RunResult) -> Iterator[ValidationRow]:
                     value=500.0,
                     unit="W",
                 ),
-                row.power_W,
+                row.power,
                 "predicted",
                 free_parameters=2,
                 assumptions="500 W is what P2 puts into the FE model of the main rig, for 80 kW "
                 "dissipated by the meshes; depends on the split of the profile shifts and on the friction "
                 "coefficient",
             )
-    bearings = [row.power_W for row in result.losses if row.stage == stage and row.kind in BEARING_KINDS]
+    bearings = [row.power for row in result.losses if row.stage == stage and row.kind in BEARING_KINDS]
     if bearings:
         yield compare(
             PublishedQuantity(

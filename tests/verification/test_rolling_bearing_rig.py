@@ -47,8 +47,8 @@ def test_a_mixed_rig_closes_its_heat() -> None:
         row.heat_to_shaft == row.heat_to_housing == 0.0 for name, row in rows.items() if "slave" in name
     )
     losses = {row.place: row for row in mixed().losses if row.kind == "bearing" and row.stage == "test"}
-    assert losses["test.wheel_front"].basis == "input" and losses["test.wheel_front"].into_body_W == 0.0
-    assert 0.0 < losses["test.pinion_front"].into_body_W < losses["test.pinion_front"].power_W
+    assert losses["test.wheel_front"].basis == "input" and losses["test.wheel_front"].into_body == 0.0
+    assert 0.0 < losses["test.pinion_front"].into_body < losses["test.pinion_front"].power
 
 
 def test_each_end_of_a_shaft_runs_on_its_own_bearing() -> None:
@@ -65,7 +65,7 @@ def test_each_end_of_a_shaft_runs_on_its_own_bearing() -> None:
     assert front.basic_life / rear.basic_life == pytest.approx((44.0 / 60.5 / share) ** (10 / 3), rel=1e-6)
     into_seats = ball.heat_to_shaft + ball.heat_to_housing
     losses = {row.place: row for row in mixed().losses if row.kind == "bearing" and row.stage == "test"}
-    assert 0.0 < into_seats < losses["test.wheel_rear"].power_W
+    assert 0.0 < into_seats < losses["test.wheel_rear"].power
     assert all(row.tilting_stiffness > 0.0 for row in rows.values())
 
 

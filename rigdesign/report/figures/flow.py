@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from rigdesign.report.figures.drawing import new_figure, plain
 from rigdesign.report.numbers import quantity_text
 from rigdesign.report.palette import INK, SERIES
-from rigdesign.results.housing import CoolingBalance
-from rigdesign.results.thermal import LossRow, OilRow, ThermalResult
+from rigdesign.results.housing import CoolingBalance, HousingTemperatures
+from rigdesign.results.thermal import LossRow, OilRow
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -185,10 +185,10 @@ def rig_flow_figure(
     into_oil: dict[str, float] = defaultdict(float)
     into_bodies: dict[str, float] = defaultdict(float)
     for row in losses:
-        if not (row.into_oil_W or row.into_body_W):
+        if not (row.into_oil or row.into_body):
             continue  # work of the mesh dampers is no heat
-        into_oil[_words(row.kind)] += row.into_oil_W
-        into_bodies[_words(row.kind)] += row.into_body_W
+        into_oil[_words(row.kind)] += row.into_oil
+        into_bodies[_words(row.kind)] += row.into_body
     flows = [Flow(kind, OIL, max(power, 0.0)) for kind, power in into_oil.items()]
     flows += [Flow(kind, BODIES, max(power, 0.0)) for kind, power in into_bodies.items()]
     if cooler.machines:
@@ -196,7 +196,7 @@ def rig_flow_figure(
     flows += [Flow(HEATERS, OIL, cooler.heater), Flow(OIL, COOLER, cooler.cooler)]
     flows.append(Flow(BODIES, ROOM, max(cooler.room, 0.0)))
     flows.append(Flow(BODIES, STREAMS, max(cooler.streams or 0.0, 0.0)))
-    given = sum(row.heat_W for row in oil) - sum(row.into_oil_W for row in losses)
+    given = sum(row.heat for row in oil) - sum(row.into_oil for row in losses)
     flows.append(Flow(BODIES, OIL, given) if given >= 0.0 else Flow(OIL, BODIES, -given))
     totals = {kind: into_oil[kind] + into_bodies[kind] for kind in into_oil}
     kinds = sorted(totals, key=lambda kind: (into_bodies[kind] > 0.1 * totals[kind], -totals[kind]))
@@ -212,15 +212,15 @@ def rig_flow_figure(
     return _drawn(layout(columns, flows, low=(bodies,)), len(kinds) + 1)
 
 
-def body_flow_figure(thermal: ThermalResult) -> "Figure":
+def body_flow_figure(thermal: HousingTemperatures) -> "Figure":
     """Heat into and out of the solids of one gearbox by kind of boundary [W]."""
     flows: dict[tuple[str, str, bool], float] = defaultdict(float)
     for row in thermal.heat:
-        if row.area_m2 == 0.0 and row.surface not in thermal.bodies:
+        if row.area == 0.0 and row.surface not in thermal.bodies:
             continue  # of a volume of fluid
         kind = _words(row.kind.partition(":")[0])
         group = TURNING if row.surface.startswith(("shaft_", "gear_")) else STANDING
-        flows[kind, group, row.power_W > 0.0] += abs(row.power_W)
+        flows[kind, group, row.power > 0.0] += abs(row.power)
     sources = _by_size({key: power for key, power in flows.items() if key[2]})
     sinks = _by_size({key: power for key, power in flows.items() if not key[2]})
     ribbons = [

@@ -8,6 +8,7 @@ from rigdesign.report.numbers import WORDS, power_text, quantity_text, split_key
 from rigdesign.report.palette import COLD, INK, MUTED, SERIES, WARM, curve_style
 from rigdesign.results.housing import RigHeat, Sink
 from rigdesign.results.quantity import row as shown_row
+from rigdesign.results.quantity import value_in_unit
 from rigdesign.results.result import CouplingHistory
 from rigdesign.results.thermal import LossRow, OilRow
 from rigdesign.results.units import KW
@@ -41,7 +42,7 @@ def losses_by_stage_figure(losses: list[LossRow]) -> "Figure":
     for number, kind in enumerate(kinds):
         colour = SERIES[number % len(SERIES)]
         power = [
-            sum(row.power_W for row in losses if row.stage == stage and row.kind == kind) for stage in stages
+            sum(row.power for row in losses if row.stage == stage and row.kind == kind) for stage in stages
         ]
         axes.barh(
             range(len(stages)), power, left=left, color=colour, height=0.65, label=words(kind), **SEPARATED
@@ -63,28 +64,28 @@ def losses_by_stage_figure(losses: list[LossRow]) -> "Figure":
 
 def losses_by_place_figure(losses: list[LossRow], stage: str) -> "Figure":
     """Power loss of every place at one stage [W], split into oil and body."""
-    rows = sorted((row for row in losses if row.stage == stage), key=lambda row: -row.power_W)
+    rows = sorted((row for row in losses if row.stage == stage), key=lambda row: -row.power)
     height = 0.75 + 0.24 * len(rows)
     figure = new_figure(height)
     axes = figure.subplots()
     places = range(len(rows))
     axes.barh(
-        places, [r.into_oil_W for r in rows], color=SERIES[0], height=0.65, label="into the oil", **SEPARATED
+        places, [r.into_oil for r in rows], color=SERIES[0], height=0.65, label="into the oil", **SEPARATED
     )
     axes.barh(
         places,
-        [r.into_body_W for r in rows],
-        left=[r.into_oil_W for r in rows],
+        [r.into_body for r in rows],
+        left=[r.into_oil for r in rows],
         color=SERIES[1],
         height=0.65,
         label="into the body",
         **SEPARATED,
     )
-    if any(r.not_heat_W > 0.0 for r in rows):
-        heat = [r.into_oil_W + r.into_body_W for r in rows]
+    if any(r.not_heat > 0.0 for r in rows):
+        heat = [r.into_oil + r.into_body for r in rows]
         axes.barh(
             places,
-            [r.not_heat_W for r in rows],
+            [r.not_heat for r in rows],
             left=heat,
             color=SERIES[2],
             height=0.65,
@@ -92,7 +93,7 @@ def losses_by_place_figure(losses: list[LossRow], stage: str) -> "Figure":
             **SEPARATED,
         )
     axes.set_yticks(places, [words(f"{row.place}, {row.kind}") for row in rows])
-    axes.set_xlim(right=1.04 * max((row.power_W for row in rows), default=1.0))
+    axes.set_xlim(right=1.04 * max((row.power for row in rows), default=1.0))
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     finish(axes, f"power loss at stage {words(stage)} [W]")
@@ -107,11 +108,12 @@ def oil_figure(oil: list[OilRow], stage: str) -> "Figure":
     height = 0.75 + 0.26 * len(rows)
     figure = new_figure(height)
     axes = figure.subplots()
-    for place, row in enumerate(rows):
-        axes.plot([row.inlet_degC, row.outlet_degC], [place, place], color=MUTED, linewidth=1.6, zorder=2)
     places = range(len(rows))
-    axes.plot([r.inlet_degC for r in rows], places, "o", color=COLD, markersize=5.5, label="inlet")
-    axes.plot([r.outlet_degC for r in rows], places, "s", color=WARM, markersize=5, label="outlet")
+    inlets, outlets = ([value_in_unit(row, name) for row in rows] for name in ("inlet", "outlet"))
+    for place, ends in enumerate(zip(inlets, outlets, strict=True)):
+        axes.plot(ends, [place, place], color=MUTED, linewidth=1.6, zorder=2)
+    axes.plot(inlets, places, "o", color=COLD, markersize=5.5, label="inlet")
+    axes.plot(outlets, places, "s", color=WARM, markersize=5, label="outlet")
     axes.set_yticks(places, [words(row.consumer) for row in rows])
     axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.margins(x=0.08)

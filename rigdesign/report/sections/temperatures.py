@@ -6,18 +6,19 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from rigdesign.report.sections.section import Draw, ReportSection, Values, gearbox_styles
+from rigdesign.results.housing import HousingTemperatures
 from rigdesign.results.result import RunResult
-from rigdesign.results.thermal import ExpansionResult, TemperatureField, ThermalResult
+from rigdesign.results.thermal import ExpansionResult, TemperatureField
 
 if TYPE_CHECKING:
     from markupsafe import Markup
 
 
-def hottest_stages(result: RunResult) -> list[ThermalResult]:
+def hottest_stages(result: RunResult) -> list[HousingTemperatures]:
     """Of every gearbox the stage with the highest temperature."""
-    found: dict[str, ThermalResult] = {}
+    found: dict[str, HousingTemperatures] = {}
     for item in result.thermal:
-        if item.gearbox not in found or item.max_temperature_degC > found[item.gearbox].max_temperature_degC:
+        if item.gearbox not in found or item.max_temperature > found[item.gearbox].max_temperature:
             found[item.gearbox] = item
     return list(found.values())
 
@@ -44,7 +45,7 @@ def _details(result: RunResult, draw: Draw) -> Values:
                 body_flow_figure(item), f"Heat through gearbox {item.gearbox} at stage {item.stage}"
             )
             for item in result.thermal
-            if any(row.power_W for row in item.heat)
+            if any(row.power for row in item.heat)
         },
     }
 

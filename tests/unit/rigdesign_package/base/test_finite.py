@@ -37,7 +37,7 @@ def case_file(tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     ("record", "place"),
     [
-        (make_result(losses=[replace(make_result().losses[0], power_W=float("nan"))]), r"losses\[0\].power_W = nan"),
+        (make_result(losses=[replace(make_result().losses[0], power=float("nan"))]), r"losses\[0\].power = nan"),
         ({"a": [1.0, {"b": (2.0, float("-inf"))}]}, r"a\[1\].b\[1\] = -inf"),
         ({"field": np.array([[1.0, 2.0], [np.inf, 0.0]])}, r"field\[1, 0\] = inf"),
         ({"scalar": np.float32("nan")}, "scalar = nan"),
@@ -81,9 +81,9 @@ def test_a_run_without_output_folder_refuses_it_too(
 
     def broken(*args: Any) -> RunResult:
         result = assembled(*args)
-        return replace(result, oil=[replace(result.oil[0], outlet_degC=float("nan")), *result.oil[1:]])
+        return replace(result, oil=[replace(result.oil[0], outlet=float("nan")), *result.oil[1:]])
 
     monkeypatch.setattr(run_module, "_assemble", broken)
     command = ["check", str(case_file), "--fidelity", "quick"]
     assert ending.exit_status(lambda: cli.app(command, result_action="return_value")) == 3
-    assert "oil[0].outlet_degC = nan" in " ".join(capsys.readouterr().err.split())
+    assert "oil[0].outlet = nan" in " ".join(capsys.readouterr().err.split())

@@ -222,8 +222,8 @@ def test_teeth_hotter_than_their_gear_govern_the_tempering_distance() -> None:
     }
     point = held("test", (1.1, 1.2), coupling_state=SimpleNamespace(gear_temperature=temperature))
     split = [
-        SimpleNamespace(gear="test.pinion", tooth_temperature=None),
-        SimpleNamespace(gear="test.wheel", tooth_temperature=423.15),
+        SimpleNamespace(gear="test.pinion", tooth=None),
+        SimpleNamespace(gear="test.wheel", tooth=423.15),
     ]
     housing: Any = SimpleNamespace(stage="test", heat_split=split)
     found = list(temperatures.tempering_distances(replace(solved([point]), temperatures=[housing])))

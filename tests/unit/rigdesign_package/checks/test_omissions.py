@@ -248,7 +248,7 @@ def test_backlash_and_tip_clearance_are_known_without_a_housing(tmp_path: Path) 
     assert backlash.verdict == tip.verdict == "open"
     assert all("thermal expansion of gearbox test" in check.left_out[0] for check in (backlash, tip))
     assert "at the temperature of their oil" in backlash.reason and "test.main" in backlash.reason
-    outlet = {row.consumer: row.outlet_degC for row in result.oil if row.stage == "test"}
+    outlet = {row.consumer: row.outlet - 273.15 for row in result.oil if row.stage == "test"}
     gears, axes = outlet["test.gear_oil"] - 20.0, outlet["test.bearing_oil"] - 20.0
     change = 2.0 * 0.36397 * 11.5e-6 * 99.5 * (axes - gears)
     thinning = 2.0 * 0.060

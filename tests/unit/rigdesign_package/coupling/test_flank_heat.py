@@ -18,7 +18,6 @@ from rigdesign.coupling.mesh_models import mesh_models
 from rigdesign.coupling.time_run import held_points
 from rigdesign.postprocessing.housing import friction_heat, heat_splits
 from rigdesign.properties.materials import ALUMINIUM, CASE_HARDENED_STEEL
-from rigdesign.results.serialisation.housing import heat_split_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.oil_supply import ChamberOil
 from rigdesign.rig.reuse import with_housings_of
@@ -169,14 +168,14 @@ def test_split_is_a_result_with_a_range(rig: Rig, done: IterationResult) -> None
         next(p.loss.power for p in done.losses if p.name == "test.main" and p.loss.kind == "mesh")
     )
     for split in splits.values():
-        row, weak, strong = heat_split_row(split), split.weak_film, split.strong_film
-        assert row.share_into_oil + row.share_into_bodies == pytest.approx(1.0)
-        assert row.share_into_oil == pytest.approx((row.at_once_W + row.film_W) / row.friction_W)
-        assert weak is not None and strong is not None and split.tooth_temperature is not None
-        assert weak.coefficient < split.coefficient < strong.coefficient  # type: ignore[operator]
+        weak, strong = split.weak_film, split.strong_film
+        assert split.share_into_oil + split.share_into_bodies == pytest.approx(1.0)
+        assert split.share_into_oil == pytest.approx((split.at_once + split.film) / split.friction)
+        assert weak is not None and strong is not None and split.tooth is not None
+        assert weak.flank_film < split.flank_film < strong.flank_film  # type: ignore[operator]
         assert weak.share_into_oil < split.share_into_oil < strong.share_into_oil
-        assert weak.bulk_temperature > split.bulk_temperature > strong.bulk_temperature
-        assert split.tooth_temperature > split.bulk_temperature
+        assert weak.bulk > split.bulk > strong.bulk
+        assert split.tooth > split.bulk
 
 
 def test_without_ranges_the_split_has_none(rig: Rig, done: IterationResult) -> None:

@@ -77,7 +77,7 @@ def audits(result: RunResult) -> list[str]:
 def test_printed_film_is_held_against_the_solved_difference(published: RunResult) -> None:
     """The field was taken at 100 K; h = 2 dT^(1/4) gives less at the difference that came out."""
     (row,) = (row for row in published.thermal[0].heat if row.surface == "field_top" and row.kind == "air")
-    solved = row.mean_temperature_degC - 20.0
+    solved = row.mean_temperature - 293.15
     assert 5.0 < solved < 60.0
     (text,) = (text for text in audits(published) if text.startswith("test: field_top") and "assumed" in text)
     change = 100.0 * ((solved / 100.0) ** 0.25 - 1.0)
@@ -97,7 +97,7 @@ def test_film_that_came_out_as_assumed_is_not_named(published: RunResult) -> Non
     assumed |= {f"outer_cold_{side}": 45.0 for side in ("front", "rear")}
     off = {
         name for name, value in assumed.items()
-        if abs(rows[name].mean_temperature_degC - 20.0 - value) > 0.1 * value
+        if abs(rows[name].mean_temperature - 293.15 - value) > 0.1 * value
     }  # fmt: skip
     named = {text.split(": ")[1] for text in audits(published) if "assumed temperature difference" in text}
     assert named == off
@@ -112,12 +112,12 @@ def test_reading_with_radiation_included_drops_what_the_print_holds(published: R
     """The box then gives the room less by about its radiation; the field keeps its own."""
     (thermal,) = published.thermal
     box = -sum(
-        row.power_W for row in thermal.heat if row.kind == "radiation" and row.surface.startswith("outer")
+        row.power for row in thermal.heat if row.kind == "radiation" and row.surface.startswith("outer")
     )
     field = -sum(
-        row.power_W for row in thermal.heat if row.kind == "radiation" and row.surface.startswith("field")
+        row.power for row in thermal.heat if row.kind == "radiation" and row.surface.startswith("field")
     )
-    less = thermal.room_heat_W - thermal.alternatives["heat_to_the_room_under_the_other_reading_W"]
+    less = thermal.room_heat - thermal.alternatives.heat_to_the_room_under_the_other_reading
     assert 0.3 * box < less < box
     assert field > 0.1 * box
 

@@ -12,8 +12,7 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.loop_over_speed import stage_losses
 from rigdesign.coupling.losses import oil_jets
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.postprocessing.housing import stage_balance
-from rigdesign.results.serialisation.housing import loss_rows
+from rigdesign.postprocessing.housing import losses_of, stage_balance
 from rigdesign.rig.model import Rig
 from tests.builders.warm_prototype import base, drive_power, lost_in_all, settled
 
@@ -60,7 +59,7 @@ def test_heat_and_motor_power_close_with_the_pump_beside_the_motor() -> None:
     assert balance.pump == pytest.approx(2 * jet_at(12000.0).pumped, rel=0.05)
     assert abs(balance.imbalance) < 2e-3 * balance.losses
     assert drive_power(rig, last) == pytest.approx(lost_in_all(last), rel=2e-3)
-    taken = sum(r.into_oil_W + r.into_body_W + r.not_heat_W for r in loss_rows("test", last.losses))
+    taken = sum(r.into_oil + r.into_body + r.not_heat for r in losses_of("test", last.losses))
     assert taken == pytest.approx(lost_in_all(last) + balance.pump, rel=1e-12)
 
 

@@ -9,9 +9,8 @@ from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.located_loss import PlacedLoss
-from rigdesign.postprocessing.housing import stage_balance
+from rigdesign.postprocessing.housing import losses_of, stage_balance
 from rigdesign.prediction.memoisation import Memoisation
-from rigdesign.results.serialisation.housing import loss_rows
 from rigdesign.run.main import losses_by_stage
 from tests.builders.warm_prototype import base, drive_power, lost, lost_in_all, open_share, outlet, settled
 from tests.published.prototype import Prototype
@@ -62,8 +61,8 @@ def test_motor_pays_the_damper_and_no_part_is_warmed_by_it() -> None:
     rig, last = settled(*CLOSING)
     assert drive_power(rig, last) == pytest.approx(lost_in_all(last), rel=2e-3)
     assert damper(last).into_oil == damper(last).into_body == 0.0
-    row = next(row for row in loss_rows("test", last.losses) if row.kind == "mesh_damping")
-    assert row.not_heat_W == row.power_W == damper(last).loss.power
+    row = next(row for row in losses_of("test", last.losses) if row.kind == "mesh_damping")
+    assert row.not_heat == row.power == damper(last).loss.power
     parts = stage_balance(rig, last).cooling
     assert parts.not_heat == pytest.approx(
         lost(last, "mesh_damping") + lost(last, "mesh_damping", "reference")
@@ -90,14 +89,14 @@ def test_case_may_give_the_work_of_the_damper_to_the_oil() -> None:
 def test_every_stage_that_turns_books_friction_and_damping_alike() -> None:
     rig, test = base()
     found = losses_by_stage(rig, [test])
-    rows = [row for stage, losses in found.items() for row in loss_rows(stage, losses)]
+    rows = [row for stage, losses in found.items() for row in losses_of(stage, losses)]
     turning = {stage.name for stage in rig.case.schedule.resolved() if stage.speed_end > 0.0}
     for kind in ("mesh", "mesh_damping"):
         assert {row.stage for row in rows if row.kind == kind and row.place == "test.main"} == turning
     # the end of the load ramp is the operating point of the test: nothing jumps between them
     ends = {
         stage: math.fsum(
-            row.power_W for row in rows if row.stage == stage and row.kind in ("mesh", "mesh_damping")
+            row.power for row in rows if row.stage == stage and row.kind in ("mesh", "mesh_damping")
         )
         for stage in ("full_torque", "test")
     }

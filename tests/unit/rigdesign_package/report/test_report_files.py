@@ -187,7 +187,7 @@ def test_curves_hold_what_the_result_holds(written):
     )
     lines = (out / "curves/losses.csv").read_text(encoding="utf-8").splitlines()
     total = sum(float(row["power [W]"]) for row in csv.DictReader(lines))
-    assert total == pytest.approx(sum(row.power_W for row in result.losses))
+    assert total == pytest.approx(sum(row.power for row in result.losses))
 
 
 def test_csv_cells():

@@ -108,7 +108,7 @@ def test_heat_that_streams_carry_off_has_its_place() -> None:
 def test_volumes_of_fluid_are_no_solids() -> None:
     thermal, _ = thermal_and_expansion()
     row = thermal.heat[0]
-    fluid = replace(row, surface="jacket", kind="stream", power_W=-5000.0, area_m2=0.0)
+    fluid = replace(row, surface="jacket", kind="stream", power=-5000.0, area=0.0)
     with drawing_style():
         assert labels(body_flow_figure(replace(thermal, heat=[*thermal.heat, fluid]))) == labels(
             body_flow_figure(thermal)

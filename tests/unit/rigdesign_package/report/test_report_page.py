@@ -284,9 +284,9 @@ def test_drivers_name_the_assumptions_a_check_rests_on():
 def test_loss_table_adds_places_and_keeps_holes():
     base = make_result().losses[0]
     rows = [
-        replace(base, place="a", stage="x", power_W=1.0),
-        replace(base, place="a", stage="x", power_W=2.0),
-        replace(base, place="b", stage="y", power_W=4.0),
+        replace(base, place="a", stage="x", power=1.0),
+        replace(base, place="a", stage="x", power=2.0),
+        replace(base, place="b", stage="y", power=4.0),
     ]
     assert views.loss_table(rows) == (["x", "y"], [("a", [3.0, None]), ("b", [None, 4.0])])
     assert views.main_stage(make_result(losses=rows)) == "y"

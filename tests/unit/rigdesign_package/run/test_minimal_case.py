@@ -39,7 +39,7 @@ def test_it_comes_to_a_verdict(result: RunResult) -> None:
 
 def test_its_losses_are_those_of_the_hand_calculation(result: RunResult) -> None:
     """P H_V mu with H_V = 0.2 and mu = 0.05 to 0.065 of Schlenk: 880 to 1150 W of 87.8 kW."""
-    mesh = [loss.power_W for loss in result.losses if loss.place.startswith("test") and loss.kind == "mesh"]
+    mesh = [loss.power for loss in result.losses if loss.place.startswith("test") and loss.kind == "mesh"]
     assert max(mesh) == pytest.approx(1000.0, rel=0.2)
 
 

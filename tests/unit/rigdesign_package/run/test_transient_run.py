@@ -70,8 +70,8 @@ def test_the_dwell_ends_in_the_coupled_steady_state(result: RunResult, planned: 
     at = last(planned, "test")
     (steady,) = result.thermal
     for body, entry in steady.bodies.items():
-        assert planned.temperatures_degC[body][at] == pytest.approx(entry["mean_degC"], abs=0.3)
-    outlets = {row.consumer: row.outlet_degC for row in result.oil}
+        assert planned.temperatures_degC[body][at] == pytest.approx(entry.mean - 273.15, abs=0.3)
+    outlets = {row.consumer: row.outlet - 273.15 for row in result.oil}
     for oil in ("gear_oil", "bearing_oil"):
         found = planned.temperatures_degC[f"{oil}_outlet"][at]
         assert found == pytest.approx(outlets[f"test.{oil}"], abs=0.3)
@@ -94,7 +94,7 @@ def test_the_power_of_heaters_and_cooler_ends_at_the_steady_one(
     power = next(curve for curve in course.oil_power if curve.branch == "schedule")
     at = max(i for i, name in enumerate(power.phase) if name == "test")
     (steady,) = result.cooler
-    streams = {row.consumer: row.heat_W for row in result.oil}
+    streams = {row.consumer: row.heat for row in result.oil}
     for name, heat in streams.items():
         assert power.streams_W[name][at] == pytest.approx(heat, rel=0.02, abs=30.0)
     assert power.heater_W[at] == pytest.approx(steady.heater, rel=0.02)

@@ -122,7 +122,7 @@ def test_temperatures_and_shifts_add_up_over_the_inputs() -> None:
     ends = [*both(GAP, hot(142.0, 0.03), hot(153.0, 0.05)), *both(OIL, hot(155.0, 0.02), hot(149.0, 0.05))]
     result = ranged(STATED, ends, GAP_CHECK)
     assert result.ranges is not None and result.ranges.max_temperature is not None
-    hottest = max(row.max_temperature_degC for row in result.thermal)
+    hottest = max(row.max_temperature - 273.15 for row in result.thermal)
     found = result.ranges.max_temperature
     assert (found.stated_degC, found.low_degC, found.high_degC) == (hottest, hottest - 8.0, hottest + 5.0)
     assert (found.low_path, found.high_path) == (GAP, OIL)

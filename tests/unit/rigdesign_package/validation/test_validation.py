@@ -16,7 +16,6 @@ from rigdesign.cli.commands.validate import validate
 from rigdesign.cli.terminal.validation import print_validation
 from rigdesign.report.pages.validation import write_validation
 from rigdesign.results.result import RunResult
-from rigdesign.results.thermal import HeatRow
 from rigdesign.validation import headline, published_rows, validation_document
 from tests.builders.report import make_result
 from tests.builders.rig import TABLE_2
@@ -33,6 +32,7 @@ from tests.published.rows import (
 )
 from tests.published.run_rows import run_rows
 from tests.published.speed_sweeps import FINE, SpeedSweep, simulation_laws, smooth, speed_sweep
+from thermal.conduction.balance import HeatFlow
 
 KEYS = {
     "id", "quantity", "source", "published", "computed", "unit", "deviation", "tolerance", "verdict", "basis",
@@ -147,7 +147,7 @@ def test_expansion_of_the_main_rig_is_held_to_one_goal(gap, wheel, verdicts):
             {"hot_mean_mm": gap + 0.01, "hot_min_mm": 0.43},
         ],
     )
-    thermal = SimpleNamespace(heat=[], max_temperature_degC=178.0, max_temperature_body="gear")
+    thermal = SimpleNamespace(heat=[], max_temperature=451.15, max_temperature_body="gear")
     result = cast(RunResult, SimpleNamespace(thermal=[thermal], expansion=[expansion]))
     rows = {row.id: row for row in main_rig.main_rig_rows(lambda _: result)}
     assert rows["P2-growth-seal-gap"].computed == pytest.approx(gap)
@@ -182,11 +182,11 @@ def test_what_follows_from_table_2_is_fitted(rows):
 def figure_12() -> RunResult:
     """A run that meets every number of the figure."""
     heat = [
-        HeatRow(surface=surface, kind=kind, power_W=-power, area_m2=1.0, mean_temperature_degC=50.0)
+        HeatFlow(surface=surface, kind=kind, power=-power, area=1.0, mean_temperature=323.15, piece=0)
         for _, _, power, kind, surfaces in main_rig.HEAT
         for surface in (surfaces[0],)
     ]
-    thermal = SimpleNamespace(heat=heat, max_temperature_degC=178.59, max_temperature_body="gear")
+    thermal = SimpleNamespace(heat=heat, max_temperature=451.74, max_temperature_body="gear")
     expansion = SimpleNamespace(
         shafts=[{"shaft": shaft, "growth_mm": value} for _, shaft, value in main_rig.EXPANSION],
         seal_gaps=[{"hot_mean_mm": 0.7, "hot_min_mm": 0.5}, {"hot_mean_mm": 0.5, "hot_min_mm": 0.4}],
@@ -557,7 +557,7 @@ def test_rows_without_a_model_carry_the_published_text():
 def test_rows_of_a_run():
     found = {r.id: r for r in run_rows(make_result())}
     assert found["run-closure-test-dwell"].verdict == "gate held"
-    assert found["run-Tmax-test-dwell"].computed == 178.6
+    assert found["run-Tmax-test-dwell"].computed == pytest.approx(178.6, rel=1e-12)
     assert found["run-loss-test_mesh"].computed == 2900.0
     assert found["run-loss-bearing"].computed == pytest.approx(690.0)
     assert found["run-drive"].computed == 9.1
