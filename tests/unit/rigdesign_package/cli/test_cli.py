@@ -39,6 +39,7 @@ title = "weak motor"
 torque_limit = "4 N m"
 [numerics]
 curve_speeds = 2
+curve_speed_start = "11000 rpm"
 [schedule]
 remove = ["stages"]
 [[schedule.stages]]

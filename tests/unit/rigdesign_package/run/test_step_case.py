@@ -14,7 +14,6 @@ from rigdesign.cli import exit_status as ending
 from rigdesign.cli import main as cli
 from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.time_run import held_points
-from rigdesign.results.result import RunResult
 from rigdesign.rig.model import build_rig
 from rigdesign.run.main import run_case
 from tests.builders import step_housing
@@ -49,15 +48,18 @@ def refused(case: Case, *words: str) -> None:
         assert word in str(error.value)
 
 
-@cache
-def whole() -> RunResult:
-    return run_case(load_case(STEP_CASE), "quick")
+NARROW_CURVE = {
+    "numerics.curve_speed_start": "1700 rpm",
+    "numerics.curve_speed_end": "1750 rpm",
+    "limits.bearing.start_torque_limit": "400 N m",
+}
+"""Off the resonances, errors of the checks at the held stage alone: nothing here reads either."""
 
 
 @pytest.mark.whole_run
 def test_a_rig_with_a_step_housing_is_solved_with_its_clearances() -> None:
     """Gears near those of the parametric box with partitions (126 degC), bearings and end seals read from the part."""
-    result = whole()
+    result = run_case(load_case(STEP_CASE).with_values(NARROW_CURVE), "quick")
     (thermal,) = result.thermal
     assert abs(thermal.closure_relative) < 1e-6
     assert thermal.bodies.keys() == {

@@ -35,6 +35,8 @@ events = ["oil_loss"]
 tolerance = "1 K"
 probes.lid = {{ gearbox = "test", place = "outer_warm", quantity = "max" }}
 """
+COARSE = {"gearboxes.test.housing.mesh.walls": "53 mm", "gearboxes.test.housing.mesh.field": "250 mm"}
+"""About twice the usual sizes, for the thermal history and the steady state it is held against."""
 WITHOUT_HOUSING = COURSE.replace("probes.lid", "# ") + '[gearboxes.test]\nremove = ["housing"]\n'
 
 
@@ -42,7 +44,7 @@ WITHOUT_HOUSING = COURSE.replace("probes.lid", "# ") + '[gearboxes.test]\nremove
 def result(tmp_path_factory: pytest.TempPathFactory) -> RunResult:
     file = tmp_path_factory.mktemp("case") / "case.toml"
     file.write_text(COURSE)
-    return run_case(load_case(file), "quick", transient=True)
+    return run_case(load_case(file).with_values(COARSE), "quick", transient=True)
 
 
 @pytest.fixture(scope="module")
