@@ -149,7 +149,12 @@ def environment() -> "Environment":
 
 def _shown(value: object) -> object:
     """What a template prints: in a text of others no mark turns the direction of the page."""
-    return type(value)(without_layout(value)) if isinstance(value, str) else value
+    from markupsafe import Markup
+
+    if not isinstance(value, str):
+        return value
+    text = without_layout(value)
+    return Markup(text) if isinstance(value, Markup) else text
 
 
 def _body(section: ReportSection, page: _Page) -> "Markup":

@@ -8,11 +8,13 @@ from itertools import pairwise
 import matplotlib as mpl
 import numpy as np
 import pytest
+from markupsafe import Markup
 
+from rigdesign.base.part_name import MeshName
 from rigdesign.report import numbers, views
 from rigdesign.report.figures.drawing import drawing_style, inline_svg, new_figure
 from rigdesign.report.figures.dynamics import dynamic_factor_figure, stage_spans
-from rigdesign.report.pages.report import report_html, signs, symbol
+from rigdesign.report.pages.report import environment, report_html, signs, symbol
 from rigdesign.results.check import Finding
 from rigdesign.results.loads import ModeCrossing
 from rigdesign.results.quantity import Records
@@ -206,6 +208,14 @@ def test_everything_from_the_case_is_escaped():
 )
 def test_a_result_without_a_part_still_has_its_page(changes):
     outline(report_html(make_result(**changes)))
+
+
+def test_a_page_prints_names_of_parts_and_keeps_its_own_marks():
+    template = environment().from_string("{{ name }} {{ sign }}")
+    assert (
+        template.render(name=MeshName("test", "a<b"), sign=Markup("<sub>1</sub>"))
+        == "test.a&lt;b <sub>1</sub>"
+    )
 
 
 def test_gearbox_without_curves_still_has_its_page():
