@@ -50,6 +50,8 @@ def number_text(value: float | None, digits: int = 4) -> str:
     """``digits`` significant digits, powers of ten from 1e6; counts (int) stay whole up to 1e7, None is a dash."""
     if value is None:
         return "–"
+    if value == 0:
+        return "0"
     magnitude = abs(value)
     if magnitude < 1e7 and isinstance(value, int):
         text = str(value)

@@ -10,6 +10,7 @@ thought over again.
 """
 
 import json
+import re
 import subprocess
 import sys
 import time
@@ -22,7 +23,8 @@ import pytest
 from rigdesign import load_case
 from rigdesign.cli.terminal.checks import print_checks
 from rigdesign.report.pages.report import report_html
-from rigdesign.report.results_json import results_document
+from rigdesign.report.results_json import read_result, results_document
+from rigdesign.report.writing import write_results
 from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 from rigdesign.rig.model import build_rig
@@ -34,6 +36,7 @@ from tests.regression import expected
 from tests.regression.expected import CASES, NAMES, NOT_APPLICABLE
 
 PROTOTYPE = CASES / "uhcf_prototype"
+NUMBER = r"\d+\.?\d*"
 EXPECTED = {name: expected.read(name) for name in NAMES}
 
 
@@ -148,6 +151,23 @@ def test_the_report_of_the_prototype_stays_below_three_and_a_half_megabytes() ->
     page = report_html(prototype())
     assert 'id="viewer-library"' in page
     assert len(page.encode("utf-8")) < 3.5e6
+
+
+@pytest.mark.parametrize("name", ["uhcf_main", "strain_gauge_rig"])
+def test_a_result_is_written_and_its_report_made_again(name: str, tmp_path: Path) -> None:
+    """All that stands in results.json and the files beside it is what the run shows."""
+    write_results(shipped(name), tmp_path)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    again, _ = read_result(tmp_path)
+    (texts, numbers), (same_texts, same_numbers) = (parted(text) for text in (page, report_html(again)))
+    assert texts == same_texts
+    assert numbers == pytest.approx(same_numbers, rel=2e-3)
+
+
+def parted(page: str) -> tuple[list[str], list[float]]:
+    """Text of a page between its numbers, and these: ten digits of a result read again may round another way."""
+    plain = re.sub(r"<(svg|script)\b.*?</\1>", "", page, flags=re.DOTALL)
+    return re.split(NUMBER, plain), [float(number) for number in re.findall(NUMBER, plain)]
 
 
 def test_heat_of_the_rig_closes() -> None:
