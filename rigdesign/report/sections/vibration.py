@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from rigdesign.report.sections.section import Draw, ReportSection, Values, gearbox_styles
+from rigdesign.results.housing import ROUND_OFF
 from rigdesign.results.result import RunResult
 from rigdesign.results.vibration import sense_of_whirl
 
@@ -119,13 +120,15 @@ def _roots(curves: list[dict[str, Any]], draw: Draw) -> "dict[str, Markup]":
 
 
 def _governing(held: list[dict[str, object]]) -> list[dict[str, object]]:
-    """Of every part the row with the highest peak, in the order of the list."""
-    found: dict[object, dict[str, object]] = {}
+    """Of every part the row with the highest peak, the first of several that agree, in the order of the list."""
+    highest: dict[object, dict[str, object]] = {}
     for row in held:
         key = row["kind"], row["part"]
-        if key not in found or float(str(row["peak_Nm"])) > float(str(found[key]["peak_Nm"])):
-            found[key] = row
-    return list(found.values())
+        if key not in highest or float(str(row["peak_Nm"])) > (1.0 + ROUND_OFF) * float(
+            str(highest[key]["peak_Nm"])
+        ):
+            highest[key] = row
+    return list(highest.values())
 
 
 def leading(band: dict[str, Any], most: int = 4) -> list[dict[str, Any]]:
