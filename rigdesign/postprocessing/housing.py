@@ -466,14 +466,14 @@ def _room(rig: Rig, sources: Sequence[HeatSource]) -> RoomTemperature | None:
     if room is None:
         return None
     heats = {f"{source.kind} {source.name}": source.sinks.get("room", 0.0) for source in sources}
-    found = room_balance(room, {name: heat for name, heat in heats.items() if heat})
-    needed = found.needed_air_flow
+    balance = room_balance(room, {name: heat for name, heat in heats.items() if heat})
+    needed = balance.needed_air_flow
     return RoomTemperature(
-        temperature=found.temperature,
+        temperature=balance.temperature,
         limit=room.temperature_limit,
-        heat=found.heat,
-        by_air=found.by_air,
-        by_walls=found.by_walls,
+        heat=balance.heat,
+        by_air=balance.by_air,
+        by_walls=balance.by_walls,
         air_flow=room.air_flow,
         needed_air_flow=None if needed is None or math.isinf(needed) else needed,
     )

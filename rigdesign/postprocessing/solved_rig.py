@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from dynamics.rating.iso_rating import permissible_factors, root_stress
-from dynamics.rotor.rolling_state import RollingState, rolling_state
+from dynamics.rotor.rolling_state import RollingState
 from dynamics.standards.iso6336_3_2006 import RootStress
 from dynamics.vibration.schedule import Schedule
 from rigdesign.case.model import Case
@@ -45,7 +45,7 @@ from rigdesign.postprocessing.tooth_history import (
     of_history,
 )
 from rigdesign.postprocessing.vibration import LoopVibration
-from rigdesign.postprocessing.warm_gearbox import warm_gearbox
+from rigdesign.postprocessing.warm_gearbox import rolling_states, warm_gearbox
 from rigdesign.results.check import NO_HOUSING, Role
 from rigdesign.results.housing import CoolingBalance, HousingTemperatures, StageBalance
 from rigdesign.results.lateral import LateralVibration
@@ -228,11 +228,8 @@ class SolvedRig:
 
     def rolling_states(self) -> Iterator[tuple[str, RollingState]]:
         """(place and stage, state) of every rolling bearing at every held stage."""
-        for point in self.points:
-            for name, found in point.last.bearings.items():
-                state = rolling_state(found)
-                if state is not None:
-                    yield f"{name}, stage {point.point.stage}", state
+        for point, name, state in rolling_states(self.points):
+            yield f"{name}, stage {point.point.stage}", state
 
     def held_contact(self, point: PointResult, mesh: int) -> HeldContact | None:
         """Loaded contact of one mesh, by its number, at a held point; None without load and of analytic teeth."""

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator
 
-from dynamics.rotor.rolling_state import rolling_state
+from dynamics.rotor.rolling_state import RollingState, rolling_state
 from rigdesign.coupling.alignment import (
     axial_closing,
     axis_deviation,
@@ -179,42 +179,47 @@ def _offset(ends: ShaftPair) -> ShaftOffset:
 # Records of the rolling bearings of solved points.
 
 
+def rolling_states(points: Iterable[PointResult]) -> Iterator[tuple[PointResult, str, RollingState]]:
+    """(point, bearing, state) of every rolling bearing at every held stage."""
+    for point in points:
+        for name, bearing in point.last.bearings.items():
+            state = rolling_state(bearing)
+            if state is not None:
+                yield point, name, state
+
+
 def rolling_bearings(rig: Rig, points: Iterable[PointResult]) -> Iterator[RollingBearingRecord]:
     """Every rolling bearing at every held stage."""
-    for point in points:
-        for name, found in point.last.bearings.items():
-            state = rolling_state(found)
-            if state is None:
-                continue
-            friction, life = state.friction, state.life
-            yield RollingBearingRecord(
-                bearing=name,
-                stage=point.point.stage,
-                designation=rig.bearing(name).label,
-                radial_load=state.load,
-                axial_load=state.axial_load,
-                speed=state.omega,
-                rolling_torque=friction.rolling,
-                sliding_torque=friction.sliding,
-                seal_torque=friction.seals,
-                drag_torque=friction.drag,
-                friction=state.power,
-                temperature=state.film_temperature,
-                inner_ring=state.inner_ring_temperature,
-                outer_ring=state.outer_ring_temperature,
-                heat_to_shaft=state.heat_to_shaft,
-                heat_to_housing=state.heat_to_housing,
-                operating_clearance=point.last.coupling_state.bearing_clearance[name],
-                basic_life=_finite(HOUR * life.basic_life),
-                modified_life=_finite(HOUR * life.modified_life),
-                static_safety=_finite(life.static_safety),
-                viscosity_ratio=life.viscosity_ratio,
-                speed_utilisation=state.speed_utilisation,
-                minimum_load=state.minimum_load,
-                radial_stiffness=state.stiffness.radial,
-                axial_stiffness=state.stiffness.axial,
-                tilting_stiffness=state.stiffness.tilting,
-            )
+    for point, name, state in rolling_states(points):
+        friction, life = state.friction, state.life
+        yield RollingBearingRecord(
+            bearing=name,
+            stage=point.point.stage,
+            designation=rig.bearing(name).label,
+            radial_load=state.load,
+            axial_load=state.axial_load,
+            speed=state.omega,
+            rolling_torque=friction.rolling,
+            sliding_torque=friction.sliding,
+            seal_torque=friction.seals,
+            drag_torque=friction.drag,
+            friction=state.power,
+            temperature=state.film_temperature,
+            inner_ring=state.inner_ring_temperature,
+            outer_ring=state.outer_ring_temperature,
+            heat_to_shaft=state.heat_to_shaft,
+            heat_to_housing=state.heat_to_housing,
+            operating_clearance=point.last.coupling_state.bearing_clearance[name],
+            basic_life=_finite(HOUR * life.basic_life),
+            modified_life=_finite(HOUR * life.modified_life),
+            static_safety=_finite(life.static_safety),
+            viscosity_ratio=life.viscosity_ratio,
+            speed_utilisation=state.speed_utilisation,
+            minimum_load=state.minimum_load,
+            radial_stiffness=state.stiffness.radial,
+            axial_stiffness=state.stiffness.axial,
+            tilting_stiffness=state.stiffness.tilting,
+        )
 
 
 def _finite(value: float) -> float | None:

@@ -70,11 +70,11 @@ class _Places:
             return {key: self.named(item) for key, item in value.items()}
         if not isinstance(value, list):
             return value
-        found = None
+        place = None
         if len(value) >= LEAST:
             of_records, of_lists = isinstance(value[0], dict), isinstance(value[0], list)
-            found = (self._records if of_records else self._matrix if of_lists else self._curve)(value)
-        return [self.named(item) for item in value] if found is None else found
+            place = (self._records if of_records else self._matrix if of_lists else self._curve)(value)
+        return [self.named(item) for item in value] if place is None else place
 
     def _curve(self, values: list[Any]) -> Json | None:
         """A list of single values."""

@@ -173,8 +173,8 @@ class _Schemas:
         }
 
     def _property(self, item: Shown) -> Json:
-        found = self.of(item.kind)
-        return found if item.quantity.unit == "-" else {**found, "unit": item.quantity.unit}
+        schema = self.of(item.kind)
+        return schema if item.quantity.unit == "-" else {**schema, "unit": item.quantity.unit}
 
     def of(self, kind: Any) -> Json:
         """Of a type."""

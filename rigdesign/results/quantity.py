@@ -127,7 +127,7 @@ def shown(kind: type) -> Mapping[str, Shown]:
         name: Annotated[hints[name], quantity]
         for name, quantity in _OF_SOLVERS.get(kind.__name__, {}).items()
     }
-    found = {item.name: _shown(item.name, hints[item.name], derived=False) for item in fields(kind)}
+    items = {item.name: _shown(item.name, hints[item.name], derived=False) for item in fields(kind)}
     for base in reversed(kind.__mro__):
         for name, member in vars(base).items():
             function = getattr(member, "fget", None) or (
@@ -135,8 +135,8 @@ def shown(kind: type) -> Mapping[str, Shown]:
             )
             hint = _hints(function).get("return") if function else None
             if _quantity(hint) is not None:
-                found[name] = _shown(name, hint, derived=True)
-    return found
+                items[name] = _shown(name, hint, derived=True)
+    return items
 
 
 def _shown(name: str, hint: Any, *, derived: bool) -> Shown:
@@ -160,8 +160,8 @@ def row(record: Any, *names: str) -> dict[str, Any]:
     """Values of a record in their units by column; some of them, in that order, or all that are no records."""
     declared = shown(record.__class__)
     chosen = [declared[name] for name in names] if names else declared.values()
-    found = {item.column: item.of(record) for item in chosen}
-    return found if names else {key: value for key, value in found.items() if not _is_nested(value)}
+    values = {item.column: item.of(record) for item in chosen}
+    return values if names else {key: value for key, value in values.items() if not _is_nested(value)}
 
 
 def _is_nested(value: Any) -> bool:

@@ -1,6 +1,7 @@
 """What a run returns: immutable records, named as they stand in results.json."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -190,7 +191,7 @@ class RunResult:
         """How many checks end with each verdict, missed advisory limits apart."""
         return {status: sum(check.status == status for check in self.checks) for status in STATUSES}
 
-    @property
+    @cached_property
     def columns(self) -> dict[str, Columns]:
         """Every curve of the run by name as lists by ``quantity [unit]``: what curves/*.csv holds."""
         return (

@@ -119,10 +119,10 @@ def _roots(curves: list[dict[str, Any]], draw: Draw) -> "dict[str, Markup]":
     return found
 
 
-def _governing(held: list[dict[str, object]]) -> list[dict[str, object]]:
+def _governing(rows: list[dict[str, object]]) -> list[dict[str, object]]:
     """Of every part the row with the highest peak, the first of several that agree, in the order of the list."""
     highest: dict[object, dict[str, object]] = {}
-    for row in held:
+    for row in rows:
         key = row["kind"], row["part"]
         if key not in highest or float(str(row["peak_Nm"])) > (1.0 + ROUND_OFF) * float(
             str(highest[key]["peak_Nm"])
@@ -175,10 +175,10 @@ R = TypeVar("R", bound=Rated)
 
 def least_safe(records: Sequence[R], *names: str) -> list[R]:
     """Of the records that agree in some values that with the least safety; one without torque is the safest."""
-    found: dict[tuple[object, ...], R] = {}
+    least: dict[tuple[object, ...], R] = {}
     for record in sorted(records, key=lambda record: math.inf if record.safety is None else record.safety):
-        found.setdefault(tuple(getattr(record, name) for name in names), record)
-    return sorted(found.values(), key=records.index)
+        least.setdefault(tuple(getattr(record, name) for name in names), record)
+    return sorted(least.values(), key=records.index)
 
 
 def _turns(result: RunResult) -> bool:

@@ -8,7 +8,7 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.checks.rolling_bearings import RULES
-from rigdesign.postprocessing import solved_rig
+from rigdesign.postprocessing import warm_gearbox
 from rigdesign.postprocessing.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.rig.model import Rig, build_rig
@@ -53,6 +53,6 @@ def test_bearings_that_are_adjusted_axially_have_no_radial_clearance(monkeypatch
 
 @pytest.mark.parametrize(("safety", "verdict"), [(3.0, "pass"), (1.2, "fail")])
 def test_static_safety_has_a_limit(safety: float, verdict: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(solved_rig, "rolling_state", lambda state: state)
+    monkeypatch.setattr(warm_gearbox, "rolling_state", lambda state: state)
     found = check("static_safety", safety=safety)
     assert (found.verdict, found.limit, found.value) == (verdict, 1.5, safety)
